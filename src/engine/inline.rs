@@ -1,0 +1,25 @@
+//! The inline driver: an actor is a direct call.
+
+use super::process::{Driver, JobOf, Process};
+
+/// Calls each actor in turn on the caller's stack.
+#[derive(Debug)]
+pub struct Inline<P> {
+    processes: Vec<P>,
+}
+
+impl<P> Inline<P> {
+    /// Drives `processes`, the actors in order of their ids.
+    #[must_use]
+    pub fn new(processes: Vec<P>) -> Self {
+        Self { processes }
+    }
+}
+
+impl<P: Process> Driver<P> for Inline<P> {
+    fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) {
+        for job in jobs {
+            self.processes[job.actor.index()].handle(job.now, &mut job.input, &mut job.output);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Time, the event queue, random streams, and actors. This floor knows nothing of robots.
+
+mod actors;
+mod inline;
+mod process;
+mod queue;
+mod random;
+mod time;
+
+pub use actors::Actors;
+pub use inline::Inline;
+pub use process::{ActorId, Driver, Job, JobOf, Process};
+pub use queue::{EventKey, EventQueue};
+pub use random::{KeyedStreams, Purpose, Streams};
+pub use time::{SimTime, Span};

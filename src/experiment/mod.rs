@@ -1,0 +1,1 @@
+//! Trials of one scenario: in parallel, interruptible, resumable.

@@ -1,0 +1,1 @@
+//! Results as files: Parquet, JSON, SVG. Reads records only.

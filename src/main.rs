@@ -1,0 +1,2 @@
+//! The `desim` command.
+fn main() {}

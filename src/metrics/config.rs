@@ -1,0 +1,25 @@
+//! What a scenario says about what is measured.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::quantity::{NonNegative, Positive};
+
+/// What is measured and when a mission counts as complete.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct MetricsConfig {
+    /// Seconds between samples of connectivity and positions.
+    pub sample_interval: Positive,
+    /// How long every target must be held with its links before the mission counts as complete, in seconds; the run then ends.
+    pub hold: NonNegative,
+}
+
+impl Default for MetricsConfig {
+    fn default() -> Self {
+        Self {
+            sample_interval: Positive::new(1.0),
+            hold: NonNegative::new(10.0),
+        }
+    }
+}

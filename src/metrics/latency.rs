@@ -1,0 +1,5 @@
+//! Latencies as a histogram of fixed relative width.
+
+/// Counts of latencies.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LatencyHistogram;

@@ -1,0 +1,123 @@
+//! What a trial leaves behind: plain data, read by reports and exports, never by the simulation.
+
+use crate::engine::{ActorId, SimTime, Span};
+use crate::geometry::Pose;
+use crate::radio::LossCause;
+
+use super::latency::LatencyHistogram;
+
+/// Everything that one trial leaves behind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrialRecord {
+    /// Number of the trial, from 0.
+    pub trial: u32,
+    /// Seed of the experiment.
+    pub seed: u64,
+    /// How the mission ended.
+    pub outcome: Outcome,
+    /// Control steps simulated.
+    pub steps: u64,
+    /// Length of a control step.
+    pub control_period: Span,
+    /// Simulated time at the end.
+    pub simulated: SimTime,
+    /// Events handled: motion ticks, wakes, samples.
+    pub events: u64,
+    /// Digest of every event, in order.
+    pub digest: u128,
+    /// Frames by topic and fate, in order of topics.
+    pub ledger: Vec<TopicFates>,
+    /// Traffic by robot, role and topic: only rows with traffic, ordered by robot, role, topic.
+    pub traffic: Vec<TrafficRow>,
+    /// Time from the start of a transmission to its arrival, of all delivered frames.
+    pub latency: LatencyHistogram,
+    /// Connectivity at each sample time.
+    pub connectivity: Vec<ConnectivitySample>,
+    /// Robots at the end, in order of ids.
+    pub robots: Vec<RobotState>,
+    /// Positions at each sample time (metres, robot by robot), as f32: for pictures.
+    pub trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
+}
+
+/// How a mission ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Every target was held with its links from this control step on, for the time that the scenario asks.
+    Completed {
+        /// The first such control step, from 0.
+        step: u64,
+    },
+    /// The time limit came first: the number of steps is censored.
+    Censored,
+    /// The protocol has no mission to complete; the run ended at its time limit.
+    NoMission,
+}
+
+/// Frames of one topic by fate, counted a copy an intended receiver.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TopicFates {
+    /// Copies that transmissions offered to robots in range.
+    pub offered: u64,
+    /// Copies that arrived.
+    pub delivered: u64,
+    /// Copies lost, by [`LossCause`] in the order of [`LossCause::ALL`].
+    pub lost: [u64; LossCause::ALL.len()],
+    /// Copies under way at the end.
+    pub in_flight: u64,
+}
+
+/// Frames and their bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Volume {
+    /// Number of frames.
+    pub frames: u64,
+    /// Their payload, bytes.
+    pub payload_bytes: u64,
+    /// Their headers, bytes.
+    pub header_bytes: u64,
+}
+
+/// Traffic of one robot while in one role, on one topic.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TrafficRow {
+    /// The robot.
+    pub robot: ActorId,
+    /// Its role then, an index into the protocol's roles.
+    pub role: u8,
+    /// The topic, an index into the protocol's topics.
+    pub topic: u8,
+    /// What it sent, a frame counted once however many robots hear it.
+    pub sent: Volume,
+    /// What reached it.
+    pub received: Volume,
+    /// What was meant for it and lost, by cause in the order of [`LossCause::ALL`].
+    pub lost: [Volume; LossCause::ALL.len()],
+}
+
+/// The swarm's graph at one instant: robots within range of each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConnectivitySample {
+    /// When.
+    pub at: SimTime,
+    /// Algebraic connectivity λ₂ of the graph Laplacian; 0 if the graph is not connected.
+    pub lambda2: f64,
+    /// Connected components.
+    pub components: u32,
+    /// Robots in each role, in order of the protocol's roles.
+    pub roles: Vec<u32>,
+    /// Vertex-disjoint chains from each target's worker to the root, nl(t) of paper eq. 5, in order of targets.
+    pub links: Vec<u32>,
+}
+
+/// A robot at the end of a trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotState {
+    /// Where it is.
+    pub pose: Pose,
+    /// Its role, an index into the protocol's roles.
+    pub role: u8,
+    /// The target that it works for, if any.
+    pub target: Option<u16>,
+    /// The robots that it relies on to reach the root.
+    pub parents: Vec<ActorId>,
+}

@@ -1,0 +1,20 @@
+//! When a robot believes that a neighbour is down.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::quantity::Positive;
+
+/// The failure detector that robots run on each other's status.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub enum DetectorConfig {
+    /// A neighbour not heard for this many seconds is declared inactive (paper section 4.3).
+    Timeout(Positive),
+}
+
+impl Default for DetectorConfig {
+    fn default() -> Self {
+        Self::Timeout(Positive::new(4.0))
+    }
+}

@@ -1,0 +1,1 @@
+//! Heartbeats and status timeouts on their own: the workload that failure detectors are measured on.

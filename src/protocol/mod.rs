@@ -1,0 +1,194 @@
+//! Protocols: what robots say and do. A robot is a pure state machine, handed time, input and randomness.
+//!
+//! A protocol implements [`Protocol`]. It sees the frames that reached it since it last woke, where it is, and what
+//! is near; it answers with messages, a velocity, timers, and notes for the metrics. It never sees the radio, the
+//! queue or another robot.
+
+use std::rc::Rc;
+
+use rand_philox::Philox;
+use tokio_util::codec::{Decoder, Encoder};
+
+use crate::engine::{ActorId, Process, SimTime};
+use crate::geometry::{Pose, Vec2};
+
+pub mod backbone;
+pub mod control;
+pub mod detector;
+pub mod gossip;
+pub mod heartbeat;
+
+/// Index of a topic in [`Protocol::TOPICS`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Topic(pub u8);
+
+/// Index of a role in [`Protocol::ROLES`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Role(pub u8);
+
+/// A protocol's own name for one of its timers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimerId(pub u8);
+
+/// A protocol as one robot runs it.
+pub trait Protocol: Sized + 'static {
+    /// What robots say to each other, decoded.
+    type Message: std::fmt::Debug + 'static;
+    /// Makes payload bytes of messages and messages of payload bytes.
+    type Codec: Encoder<Self::Message, Error = CodecError> + Decoder<Item = Self::Message, Error = CodecError> + Default;
+    /// Names of the topics, by which traffic is accounted.
+    const TOPICS: &'static [&'static str];
+    /// Names of the roles, by which traffic is accounted. A robot starts in the first.
+    const ROLES: &'static [&'static str];
+
+    /// The topic that `message` belongs to.
+    fn topic(message: &Self::Message) -> Topic;
+
+    /// Takes one step: reads `input`, fills `output`.
+    fn step(&mut self, now: SimTime, input: &mut Input<Self::Message>, output: &mut Output<Self::Message>);
+}
+
+/// Why a robot is awake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wake {
+    /// Its control period came round.
+    ControlStep,
+    /// A timer that it had set ran out, at exactly this instant.
+    Timer(TimerId),
+    /// A frame arrived, in scenarios that wake robots so.
+    Reception,
+}
+
+/// What a robot is told when it wakes.
+#[derive(Debug)]
+pub struct Input<M> {
+    /// Why it is awake.
+    pub wake: Wake,
+    /// The frames that arrived since it last woke, in order of arrival.
+    pub inbox: Vec<Reception<M>>,
+    /// Where it is, as it senses it.
+    pub pose: Pose,
+    /// Near bodies at a control step (robots, walls, obstacles, within the proximity range): the vector from this
+    /// robot's edge to the nearest point of each, in the arena's axes, metres.
+    pub proximity: Vec<Vec2>,
+    /// Randomness for this wake alone.
+    pub random: Philox,
+}
+
+/// A frame as it is shared by those that receive it: decoded once, for its bytes are the same at every receiver.
+#[derive(Debug)]
+pub struct Frame<M> {
+    /// Who sent it (the frame's header carries it).
+    pub sender: ActorId,
+    /// Its number among the sender's frames.
+    pub sequence: u32,
+    /// When its transmission began.
+    pub sent_at: SimTime,
+    /// Its topic.
+    pub topic: Topic,
+    /// Length of its payload in bytes, header not included.
+    pub payload_bytes: u32,
+    /// What its payload says.
+    pub message: M,
+}
+
+/// A frame that reached this robot.
+#[derive(Debug)]
+pub struct Reception<M> {
+    /// When it arrived.
+    pub at: SimTime,
+    /// The frame.
+    pub frame: Rc<Frame<M>>,
+    /// Where the sender was when it sent, relative to this robot then, in the arena's axes, metres: situated
+    /// communication (paper section 3.1), with the scenario's noise.
+    pub displacement: [f32; 2],
+}
+
+impl<M> Reception<M> {
+    /// [`displacement`](Self::displacement) as a vector.
+    #[must_use]
+    pub fn displacement(&self) -> Vec2 {
+        Vec2::new(f64::from(self.displacement[0]), f64::from(self.displacement[1]))
+    }
+}
+
+/// What a robot answers when it has woken.
+#[derive(Debug)]
+pub struct Output<M> {
+    /// Messages to broadcast, in order.
+    pub broadcasts: Vec<M>,
+    /// The velocity it wants from now on, in the arena's axes, m/s; `None` keeps the last one.
+    pub velocity: Option<Vec2>,
+    /// Timers to set (`Some`, replacing the pending one of that id) or to cancel (`None`).
+    pub timers: Vec<(TimerId, Option<SimTime>)>,
+    /// What the metrics should know.
+    pub notes: Vec<Note>,
+}
+
+impl<M> Default for Output<M> {
+    fn default() -> Self {
+        Self {
+            broadcasts: Vec::new(),
+            velocity: None,
+            timers: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+}
+
+impl<M> Output<M> {
+    /// Empties it and keeps its buffers.
+    pub fn clear(&mut self) {
+        self.broadcasts.clear();
+        self.velocity = None;
+        self.timers.clear();
+        self.notes.clear();
+    }
+}
+
+/// Something about a robot that metrics follow. A robot reports a change once, when it happens.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Note {
+    /// It now has this role.
+    Role(Role),
+    /// It now works for this target (an index into the mission's targets), or for none.
+    Target(Option<u16>),
+    /// These are now the robots that it relies on to reach the root: a worker has one a link, a relay one.
+    Parents(Vec<ActorId>),
+    /// It now believes that this robot is down.
+    Suspects(ActorId),
+    /// It believes so no longer.
+    Trusts(ActorId),
+}
+
+/// Payload bytes that are no message of the protocol.
+#[derive(Debug, thiserror::Error)]
+pub enum CodecError {
+    /// The bytes end before the message does.
+    #[error("payload ends after {0} bytes, in the middle of a message")]
+    Truncated(usize),
+    /// A byte has a value that its field does not know.
+    #[error("{field} cannot be {value}")]
+    Unknown {
+        /// The field's name.
+        field: &'static str,
+        /// The byte found.
+        value: u8,
+    },
+    /// Required by the codec traits; reading memory does not fail.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
+
+/// A robot: a protocol that an engine's driver can run.
+#[derive(Debug)]
+pub struct Robot<P>(pub P);
+
+impl<P: Protocol> Process for Robot<P> {
+    type Input = Input<P::Message>;
+    type Output = Output<P::Message>;
+
+    fn handle(&mut self, now: SimTime, input: &mut Self::Input, output: &mut Self::Output) {
+        self.0.step(now, input, output);
+    }
+}

@@ -1,0 +1,81 @@
+//! Scenario files: one file is one question. This module composes the configs of the parts; each part owns its own.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::metrics::MetricsConfig;
+use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
+use crate::protocol::backbone::BackboneConfig;
+use crate::protocol::control::ControlConfig;
+use crate::protocol::detector::DetectorConfig;
+use crate::protocol::gossip::GossipConfig;
+use crate::quantity::Positive;
+use crate::radio::RadioConfig;
+
+/// A scenario: everything that a run is given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// Name of the scenario; the default results folder is `results/<name>`. Letters, digits, `-` and `_`.
+    pub name: String,
+    /// Number of trials, each with random streams of its own.
+    #[serde(default = "one_trial")]
+    pub trials: u32,
+    /// Seed of every random stream.
+    #[serde(default = "first_seed")]
+    pub seed: u64,
+    /// Simulated seconds after which a trial ends, complete or not.
+    pub time_limit: Positive,
+    /// The arena.
+    #[serde(default)]
+    pub arena: ArenaConfig,
+    /// The robots.
+    pub swarm: SwarmConfig,
+    /// How robots move.
+    #[serde(default)]
+    pub motion: MotionConfig,
+    /// When robots wake.
+    #[serde(default)]
+    pub control: ControlConfig,
+    /// What robots run.
+    pub protocol: ProtocolConfig,
+    /// How often robots repeat what they gossip.
+    #[serde(default)]
+    pub gossip: GossipConfig,
+    /// When a robot believes that a neighbour is down.
+    #[serde(default)]
+    pub detector: DetectorConfig,
+    /// The radio.
+    #[serde(default)]
+    pub radio: RadioConfig,
+    /// What is measured.
+    #[serde(default)]
+    pub metrics: MetricsConfig,
+}
+
+fn one_trial() -> u32 {
+    1
+}
+
+fn first_seed() -> u64 {
+    1
+}
+
+/// The robots of a scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SwarmConfig {
+    /// How many, from 1.
+    pub robots: u32,
+    /// Where they start.
+    pub deploy: DeployConfig,
+}
+
+/// The protocol that robots run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub enum ProtocolConfig {
+    /// The paper's failure-tolerant connectivity backbone.
+    Backbone(BackboneConfig),
+    /// Status broadcasts and timeouts alone, on robots that stand still.
+    Heartbeat,
+}
