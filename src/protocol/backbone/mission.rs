@@ -48,6 +48,21 @@ pub struct Chain {
     pub lane: f64,
 }
 
+impl Chain {
+    /// How far to the left of the straight line the chain runs at `ahead` metres from the root: lanes part gradually over
+    /// the first spring's length.
+    #[must_use]
+    pub fn lane_at(&self, ahead: f64) -> f64 {
+        self.lane * (ahead / self.rest).clamp(0.0, 1.0)
+    }
+
+    /// The left of the way from the root to the target, a unit vector.
+    #[must_use]
+    pub fn left(&self) -> Vec2 {
+        Vec2::new(-self.forward.y, self.forward.x)
+    }
+}
+
 /// Settings in metres, m/s, 1/s and whole control steps. See [`BackboneConfig`] for what they mean.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
@@ -60,6 +75,7 @@ pub struct Parameters {
     pub target_gain: f64,
     pub push_limit: f64,
     pub lane_gain: f64,
+    pub lane_limit: f64,
     pub lj_gain: f64,
     pub lj_delta: f64,
     pub avoidance_range: f64,
@@ -186,6 +202,7 @@ impl Parameters {
             target_gain: law.target_gain.get(),
             push_limit: law.push_limit.get(),
             lane_gain: law.lane_gain.get(),
+            lane_limit: law.lane_limit.get(),
             lj_gain: config.lj_epsilon.get() * law.lj_speed.get(),
             lj_delta: config.lj_delta.get(),
             avoidance_range: law.avoidance_range.get(),
@@ -207,6 +224,14 @@ impl Parameters {
             request_every,
             silence: Span::from_secs(silence.get()),
         }
+    }
+}
+
+impl Parameters {
+    /// The distance up to which the gate f is fully open, metres: beyond the safe distance, for a chain at rest is taut.
+    #[must_use]
+    pub fn gate_opening(&self) -> f64 {
+        f64::midpoint(self.safe, self.gate)
     }
 }
 

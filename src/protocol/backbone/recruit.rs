@@ -10,6 +10,7 @@ use crate::engine::ActorId;
 use crate::geometry::{Vec2, direction};
 
 use super::message::{Message, Request, Role, Strand};
+use super::mission::Chain;
 use super::strand;
 use super::view::View;
 
@@ -99,7 +100,7 @@ impl Slot {
         self.give_up_a_lost_parent(view);
         self.settle_invitation(view, wanted);
         if wanted && self.invitation.is_none() {
-            let place = joining_place(view.mission.origin, view.position, view.mission.chain(self.chain).rest);
+            let place = joining_place(view.mission.origin, view.position, view.mission.chain(self.chain));
             self.invitation = recruiter
                 .candidate(view, place)
                 .map(|candidate| recruiter.invite(view, candidate));
@@ -201,11 +202,11 @@ impl Slot {
     }
 }
 
-/// Where a joiner goes: on the way from the root at `origin` to its child at `child`, a spring's length before it, but
-/// well ahead of the root.
+/// Where a joiner of `chain` goes: on the way from the root at `origin` to its child at `child`, a spring's length before
+/// it, but well ahead of the root; and over to its chain's lane, so that chains need not cross.
 #[must_use]
-pub fn joining_place(origin: Vec2, child: Vec2, rest: f64) -> Vec2 {
+pub fn joining_place(origin: Vec2, child: Vec2, chain: &Chain) -> Vec2 {
     let way = child - origin;
-    let ahead = (way.norm() - rest).max(2.0 * AHEAD * rest).min(rest);
-    origin + direction(way) * ahead
+    let ahead = (way.norm() - chain.rest).clamp(2.0 * AHEAD * chain.rest, chain.rest);
+    origin + direction(way) * ahead + chain.left() * chain.lane_at(ahead)
 }

@@ -73,9 +73,7 @@ impl Worker {
         if pull.farthest >= parameters.critical {
             return pull.leash;
         }
-        // The gate opens a safe distance's slack before it closes: at rest under tension it must be open.
-        let opening = f64::midpoint(parameters.safe, parameters.gate);
-        let open = forces::gate(pull.farthest, opening, parameters.gate);
+        let open = forces::gate(pull.farthest, parameters.gate_opening(), parameters.gate);
         let to_target = forces::target(self.way_to_target(view), parameters.target_gain);
         let desired = pull.springs + to_target * open;
         desired + avoidance(view, desired, parameters) * open
