@@ -47,6 +47,15 @@ impl Medium {
         self.range
     }
 
+    /// The number that the next frame of `sender` will have.
+    ///
+    /// # Panics
+    /// If `sender` is not one of the medium's robots.
+    #[must_use]
+    pub fn upcoming(&self, sender: ActorId) -> u32 {
+        self.sequences[sender.index()]
+    }
+
     /// Transmits the next frame of `sender` at `now`, and returns the frame's number among that sender's, from 0.
     ///
     /// `listeners` are the other robots within [`range`](Self::range) at that instant. `receive` is called once for

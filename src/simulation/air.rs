@@ -84,7 +84,7 @@ impl<P: Protocol> Air<P> {
         recorder.offered(topic, self.listeners.len() as u64);
         let frame = Rc::new(Frame {
             sender,
-            sequence: self.medium.next_sequence(sender),
+            sequence: self.medium.upcoming(sender),
             sent_at: now,
             topic,
             payload_bytes,
