@@ -277,10 +277,26 @@ mod tests {
     #[test]
     fn every_problem_is_reported_at_its_field_with_its_remedy() {
         for (loss, latency, expected) in [
-            (gilbert_elliott(0.0, 0.0, 0.0, 1.0), uniform(0.0, 0.1), vec![("loss", "set one of them above 0")]),
-            (gilbert_elliott(0.1, 0.2, 0.9, 0.1), uniform(0.0, 0.1), vec![("loss", "exchange them")]),
-            (LossConfig::None, uniform(0.2, 0.1), vec![("latency", "min 0.2 above max 0.1; exchange them")]),
-            (LossConfig::None, normal(0.01, 0.02), vec![("latency", "lower min to at most the mean")]),
+            (
+                gilbert_elliott(0.0, 0.0, 0.0, 1.0),
+                uniform(0.0, 0.1),
+                vec![("loss", "set one of them above 0")],
+            ),
+            (
+                gilbert_elliott(0.1, 0.2, 0.9, 0.1),
+                uniform(0.0, 0.1),
+                vec![("loss", "exchange them")],
+            ),
+            (
+                LossConfig::None,
+                uniform(0.2, 0.1),
+                vec![("latency", "min 0.2 above max 0.1; exchange them")],
+            ),
+            (
+                LossConfig::None,
+                normal(0.01, 0.02),
+                vec![("latency", "lower min to at most the mean")],
+            ),
             (
                 gilbert_elliott(0.0, 0.0, 0.0, 1.0),
                 normal(0.01, 0.02),

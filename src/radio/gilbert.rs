@@ -151,7 +151,11 @@ mod tests {
     fn memory_lasts_for_as_long_as_a_draw_can_tell_the_difference() {
         let links = chains(0.05, 0.2);
         assert!(power(0.75, links.memory) < RESOLUTION && power(0.75, links.memory - 1) >= RESOLUTION);
-        assert_eq!(chains(0.4, 0.6).memory, 0, "a chain without correlation has nothing to remember");
+        assert_eq!(
+            chains(0.4, 0.6).memory,
+            0,
+            "a chain without correlation has nothing to remember"
+        );
         assert_eq!(chains(1.0, 1.0).memory, u32::MAX, "an alternating chain never forgets");
     }
 
