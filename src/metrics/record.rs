@@ -1,5 +1,7 @@
 //! What a trial leaves behind: plain data, read by reports and exports, never by the simulation.
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Pose;
 use crate::radio::LossCause;
@@ -7,7 +9,7 @@ use crate::radio::LossCause;
 use super::latency::LatencyHistogram;
 
 /// Everything that one trial leaves behind.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrialRecord {
     /// Number of the trial, from 0.
     pub trial: u32,
@@ -40,7 +42,7 @@ pub struct TrialRecord {
 }
 
 /// How a mission ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
     /// Every target was held with its links from this control step on, for the time that the scenario asks.
     Completed {
@@ -54,7 +56,7 @@ pub enum Outcome {
 }
 
 /// Frames of one topic by fate, counted a copy an intended receiver.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TopicFates {
     /// Copies that transmissions offered to robots in range.
     pub offered: u64,
@@ -67,7 +69,7 @@ pub struct TopicFates {
 }
 
 /// Frames and their bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Volume {
     /// Number of frames.
     pub frames: u64,
@@ -78,7 +80,7 @@ pub struct Volume {
 }
 
 /// Traffic of one robot while in one role, on one topic.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrafficRow {
     /// The robot.
     pub robot: ActorId,
@@ -95,7 +97,7 @@ pub struct TrafficRow {
 }
 
 /// The swarm's graph at one instant: robots within range of each other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConnectivitySample {
     /// When.
     pub at: SimTime,
@@ -110,7 +112,7 @@ pub struct ConnectivitySample {
 }
 
 /// A robot at the end of a trial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RobotState {
     /// Where it is.
     pub pose: Pose,
