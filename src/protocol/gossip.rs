@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::engine::Span;
 use crate::quantity::Positive;
 
 /// Gossip settings, topic by topic.
@@ -23,6 +24,15 @@ pub struct GossipConfig {
 pub struct TopicConfig {
     /// Seconds between broadcasts; rounded up to whole control periods (paper: every control step, 0.1 s).
     pub interval: Positive,
+}
+
+impl TopicConfig {
+    /// Control steps from one broadcast to the next, at least 1.
+    #[must_use]
+    pub fn steps(&self, control_period: Span) -> u64 {
+        let interval = Span::from_secs(self.interval.get()).as_nanos();
+        interval.div_ceil(control_period.as_nanos().max(1)).max(1)
+    }
 }
 
 impl Default for TopicConfig {

@@ -40,6 +40,8 @@ pub trait Protocol: Sized + 'static {
     const TOPICS: &'static [&'static str];
     /// Names of the roles, by which traffic is accounted. A robot starts in the first.
     const ROLES: &'static [&'static str];
+    /// Whether robots read [`Input::proximity`]; if not, it stays empty and costs nothing.
+    const SENSES_PROXIMITY: bool = true;
 
     /// The topic that `message` belongs to.
     fn topic(message: &Self::Message) -> Topic;

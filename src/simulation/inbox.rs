@@ -1,0 +1,108 @@
+//! Where frames wait for their receiver: a copy goes straight here, not through the event queue.
+
+use std::cmp::Ordering;
+
+use crate::engine::SimTime;
+use crate::protocol::Reception;
+
+/// Frames on their way to one robot, and those that arrived since it last woke.
+#[derive(Debug)]
+pub struct Inbox<M> {
+    waiting: Vec<Reception<M>>,
+    /// No waiting frame arrives later than this.
+    latest: SimTime,
+}
+
+impl<M> Default for Inbox<M> {
+    fn default() -> Self {
+        Self {
+            waiting: Vec::new(),
+            latest: SimTime::ZERO,
+        }
+    }
+}
+
+impl<M> Inbox<M> {
+    /// Takes in a frame that will arrive at `reception.at`.
+    #[inline]
+    pub fn push(&mut self, reception: Reception<M>) {
+        self.latest = self.latest.max(reception.at);
+        self.waiting.push(reception);
+    }
+
+    /// Moves what has arrived by `now` into the empty `arrived`, in order of arrival, then of sender and its sequence.
+    pub fn take_arrived(&mut self, now: SimTime, arrived: &mut Vec<Reception<M>>) {
+        if self.latest <= now {
+            std::mem::swap(&mut self.waiting, arrived);
+        } else {
+            arrived.extend(self.waiting.extract_if(.., |reception| reception.at <= now));
+        }
+        arrived.sort_unstable_by(arrival_order);
+    }
+
+    /// The earliest arrival still waiting.
+    pub fn next_arrival(&self) -> Option<SimTime> {
+        self.waiting.iter().map(|reception| reception.at).min()
+    }
+
+    /// All that is still waiting, arrived or not.
+    pub fn waiting(&self) -> &[Reception<M>] {
+        &self.waiting
+    }
+}
+
+fn arrival_order<M>(a: &Reception<M>, b: &Reception<M>) -> Ordering {
+    a.at.cmp(&b.at)
+        .then_with(|| (a.frame.sender, a.frame.sequence).cmp(&(b.frame.sender, b.frame.sequence)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::rc::Rc;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::engine::ActorId;
+    use crate::protocol::{Frame, Topic};
+
+    fn reception(at: u64, sender: u32, sequence: u32) -> Reception<()> {
+        Reception {
+            at: SimTime::from_nanos(at),
+            frame: Rc::new(Frame {
+                sender: ActorId(sender),
+                sequence,
+                sent_at: SimTime::ZERO,
+                topic: Topic(0),
+                payload_bytes: 4,
+                message: (),
+            }),
+            displacement: [0.0; 2],
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_frame_is_read_once_by_the_first_wake_at_or_after_its_arrival_and_in_order(
+            frames in prop::collection::vec((0_u64..100, 0_u32..5), 0..60),
+            mut wakes in prop::collection::vec(0_u64..120, 1..10),
+        ) {
+            wakes.sort_unstable();
+            let mut inbox = Inbox::default();
+            for (sequence, &(at, sender)) in frames.iter().enumerate() {
+                inbox.push(reception(at, sender, sequence as u32));
+            }
+            let mut read = Vec::new();
+            for &wake in &wakes {
+                let mut arrived = Vec::new();
+                inbox.take_arrived(SimTime::from_nanos(wake), &mut arrived);
+                prop_assert!(arrived.iter().all(|reception| reception.at.as_nanos() <= wake));
+                read.extend(arrived.iter().map(|r| (r.at.as_nanos(), r.frame.sender.0, r.frame.sequence)));
+            }
+            prop_assert!(read.is_sorted());
+            let last = *wakes.last().unwrap();
+            prop_assert_eq!(read.len(), frames.iter().filter(|frame| frame.0 <= last).count());
+            prop_assert_eq!(inbox.waiting().len(), frames.len() - read.len());
+        }
+    }
+}
