@@ -1,9 +1,17 @@
 //! What a run leaves behind: traffic, fates, connectivity, outcome, and the statistics over trials.
 
 mod config;
+mod connectivity;
 mod latency;
+mod mission;
 mod record;
+mod recorder;
+mod reports;
+mod traffic;
 
 pub use config::MetricsConfig;
+pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
+pub use mission::{Mission, MissionTarget, Progress};
 pub use record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord, Volume};
+pub use recorder::{Layout, Recorder, RunEnd};

@@ -1,5 +1,7 @@
 //! What a trial leaves behind: plain data, read by reports and exports, never by the simulation.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
@@ -41,6 +43,32 @@ pub struct TrialRecord {
     pub trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
 }
 
+impl TrialRecord {
+    /// The least λ₂ over the samples; `None` without a sample.
+    #[must_use]
+    pub fn lambda2_min(&self) -> Option<f64> {
+        self.connectivity
+            .iter()
+            .map(|sample| sample.lambda2)
+            .min_by(f64::total_cmp)
+    }
+
+    /// Share of the samples that find the swarm in one piece; `None` without a sample.
+    #[must_use]
+    pub fn connected_share(&self) -> Option<f64> {
+        let connected = self.connectivity.iter().filter(|sample| sample.components == 1).count();
+        (!self.connectivity.is_empty()).then(|| connected as f64 / self.connectivity.len() as f64)
+    }
+
+    /// Robots that ended in another role than the one that all start in: those that the mission took. `None` where
+    /// there is no mission.
+    #[must_use]
+    pub fn robots_used(&self) -> Option<usize> {
+        let used = || self.robots.iter().filter(|robot| robot.role != 0).count();
+        (self.outcome != Outcome::NoMission).then(used)
+    }
+}
+
 /// How a mission ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
@@ -66,6 +94,43 @@ pub struct TopicFates {
     pub lost: [u64; LossCause::ALL.len()],
     /// Copies under way at the end.
     pub in_flight: u64,
+}
+
+impl TopicFates {
+    /// Whether every copy offered has exactly one fate.
+    #[must_use]
+    pub fn is_balanced(&self) -> bool {
+        self.offered == self.delivered + self.lost.iter().sum::<u64>() + self.in_flight
+    }
+
+    /// Adds the frames of `other`.
+    pub fn add(&mut self, other: &Self) {
+        self.offered += other.offered;
+        self.delivered += other.delivered;
+        self.in_flight += other.in_flight;
+        for (mine, theirs) in self.lost.iter_mut().zip(&other.lost) {
+            *mine += theirs;
+        }
+    }
+}
+
+impl fmt::Display for TopicFates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let causes: Vec<String> = LossCause::ALL
+            .iter()
+            .zip(&self.lost)
+            .map(|(cause, frames)| format!("{} {frames}", cause.name()))
+            .collect();
+        let lost: u64 = self.lost.iter().sum();
+        write!(
+            f,
+            "offered {}, delivered {}, lost {lost} ({}), in flight {}",
+            self.offered,
+            self.delivered,
+            causes.join(", "),
+            self.in_flight
+        )
+    }
 }
 
 /// Frames and their bytes.
