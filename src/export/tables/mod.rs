@@ -28,21 +28,32 @@ pub struct Tables {
 }
 
 impl Tables {
+    /// Names of the files.
+    pub const FILES: [&str; 7] = [
+        "trials.parquet",
+        "frames.parquet",
+        "bandwidth.parquet",
+        "latency.parquet",
+        "connectivity.parquet",
+        "robots.parquet",
+        "trajectories.parquet",
+    ];
+
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
     ///
     /// # Errors
     /// If a file cannot be written.
     pub fn create(dir: &Path, names: Names, targets: usize) -> io::Result<Self> {
-        let path = |name: &str| dir.join(format!("{name}.parquet"));
+        let path = |index: usize| dir.join(Self::FILES[index]);
         Ok(Self {
             names,
-            trials: Table::create(&path("trials"), trials::columns())?,
-            frames: Table::create(&path("frames"), frames::columns())?,
-            bandwidth: Table::create(&path("bandwidth"), bandwidth::columns())?,
-            latency: Table::create(&path("latency"), latency::columns())?,
-            connectivity: Table::create(&path("connectivity"), connectivity::columns(&names, targets))?,
-            robots: Table::create(&path("robots"), robots::columns())?,
-            trajectories: Table::create(&path("trajectories"), trajectories::columns())?,
+            trials: Table::create(&path(0), trials::columns())?,
+            frames: Table::create(&path(1), frames::columns())?,
+            bandwidth: Table::create(&path(2), bandwidth::columns())?,
+            latency: Table::create(&path(3), latency::columns())?,
+            connectivity: Table::create(&path(4), connectivity::columns(&names, targets))?,
+            robots: Table::create(&path(5), robots::columns())?,
+            trajectories: Table::create(&path(6), trajectories::columns())?,
         })
     }
 

@@ -13,6 +13,7 @@ pub struct Row {
     control_period_s: f64,
     simulated_s: f64,
     robots: usize,
+    robots_used: Option<usize>,
     events: u64,
     lambda2_min: Option<f64>,
     connected_share: Option<f64>,
@@ -22,8 +23,6 @@ pub struct Row {
 }
 
 pub fn row(record: &TrialRecord) -> Row {
-    let samples = &record.connectivity;
-    let connected = samples.iter().filter(|sample| sample.components == 1).count();
     Row {
         trial: record.trial,
         seed: record.seed,
@@ -32,9 +31,10 @@ pub fn row(record: &TrialRecord) -> Row {
         control_period_s: record.control_period.as_secs(),
         simulated_s: record.simulated.as_secs(),
         robots: record.robots.len(),
+        robots_used: record.robots_used(),
         events: record.events,
-        lambda2_min: samples.iter().map(|sample| sample.lambda2).reduce(f64::min),
-        connected_share: (!samples.is_empty()).then(|| connected as f64 / samples.len() as f64),
+        lambda2_min: record.lambda2_min(),
+        connected_share: record.connected_share(),
         latency_min: record.latency.min(),
         latency_max: record.latency.max(),
         digest: record.digest,
@@ -56,6 +56,7 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::f64("control_period_s", |row| row.control_period_s),
         Col::f64("simulated_s", |row| row.simulated_s),
         Col::i32("robots", |row| row.robots as i32),
+        Col::optional_i32("robots_used", |row| row.robots_used.map(|robots| robots as i32)),
         Col::i64("events", |row| row.events as i64),
         Col::optional_f64("lambda2_min", |row| row.lambda2_min),
         Col::optional_f64("connected_share", |row| row.connected_share),
