@@ -123,20 +123,28 @@ fn dense_lambda2(graph: &Graph) -> f64 {
     eigenvalues[1]
 }
 
+fn assert_dense_agrees(graph: &Graph) {
+    let (found, dense) = (graph.algebraic_connectivity(), dense_lambda2(graph));
+    let rounding = graph.vertices() as f64 * f64::EPSILON * 100.0;
+    assert!(
+        (found - dense).abs() <= LAMBDA2_TOLERANCE * dense + rounding,
+        "{} vertices: {found}, dense {dense}",
+        graph.vertices()
+    );
+}
+
 #[test]
 fn lambda2_agrees_with_a_dense_solver_on_random_unit_disk_graphs() {
-    // 20 neighbours on average, so that most graphs are connected; the dense solver is right to about n·ε·λmax.
+    // 20 neighbours on average, fewer at the border: most graphs are connected. The dense solver is right to about
+    // n·ε·λmax.
+    let mut connected = 0;
     for (scatter, count) in (0..).zip([5, 20, 40, 80, 80, 300, 300, 500, 1000]) {
         let side = 2.0 * (PI * f64::from(count) / 20.0).sqrt();
         let graph = Graph::within_range(&scattered(count, side, scatter), 2.0);
-        assert_eq!(graph.components(), 1, "pick another scatter");
-        let (found, dense) = (graph.algebraic_connectivity(), dense_lambda2(&graph));
-        let rounding = f64::from(count) * f64::EPSILON * 100.0;
-        assert!(
-            (found - dense).abs() <= LAMBDA2_TOLERANCE * dense + rounding,
-            "{count} robots: {found}, dense {dense}"
-        );
+        connected += u32::from(graph.components() == 1);
+        assert_dense_agrees(&graph);
     }
+    assert!(connected >= 6, "only {connected} of 9 graphs are connected");
 }
 
 #[test]
@@ -150,12 +158,7 @@ fn lambda2_agrees_with_a_dense_solver_on_sparse_random_graphs_of_any_numbering()
             .chain((0..count).map(|i| [i, (i * i + 7) % count]))
             .collect();
         let graph = Graph::new(count as usize, tree_and_chords);
-        let (found, dense) = (graph.algebraic_connectivity(), dense_lambda2(&graph));
-        let rounding = f64::from(count) * f64::EPSILON * 100.0;
-        assert!(
-            (found - dense).abs() <= LAMBDA2_TOLERANCE * dense + rounding,
-            "{count} vertices: {found}, dense {dense}"
-        );
+        assert_dense_agrees(&graph);
     }
 }
 
@@ -206,7 +209,7 @@ fn chains_of_known_parent_relations_number_what_menger_says() {
         "greedy through 3 and 1 must be undone"
     );
     assert_eq!(
-        chains(&[&[], &[0], &[0, 1, 3]], 2),
+        chains(&[&[], &[0], &[0, 1, 3], &[]], 2),
         2,
         "the root as a parent, and a dead end"
     );

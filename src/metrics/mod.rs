@@ -7,6 +7,8 @@ mod mission;
 mod record;
 mod recorder;
 mod reports;
+pub mod statistics;
+pub mod summary;
 mod traffic;
 
 pub use config::MetricsConfig;
@@ -15,3 +17,5 @@ pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget, Progress};
 pub use record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord, Volume};
 pub use recorder::{Layout, Recorder, RunEnd};
+pub use statistics::Estimate;
+pub use summary::Summary;

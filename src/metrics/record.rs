@@ -144,6 +144,14 @@ pub struct Volume {
     pub header_bytes: u64,
 }
 
+impl Volume {
+    /// All their bytes, headers included.
+    #[must_use]
+    pub fn bytes(self) -> u64 {
+        self.payload_bytes + self.header_bytes
+    }
+}
+
 /// Traffic of one robot while in one role, on one topic.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrafficRow {

@@ -12,8 +12,6 @@ use super::graph::Graph;
 const RELATIVE_RESIDUAL: f64 = 1e-8;
 /// Steps between looks at the residual.
 const STEPS_BETWEEN_LOOKS: usize = 4;
-/// A Krylov space is exhausted when the next direction is this share of the operator's size: what is left is rounding.
-const EXHAUSTED: f64 = 1e-12;
 /// The start vector: fixed, and without the symmetries that a graph may have.
 const START: Purpose = Purpose::new("metrics.lanczos");
 
@@ -25,11 +23,11 @@ pub(super) fn least_positive_eigenvalue(graph: &Graph) -> f64 {
     loop {
         let mut next = basis[basis.len() - 1].clone();
         factor.solve(&mut next);
-        centre(&mut next);
         let diagonal = dot(&next, &basis[basis.len() - 1]);
         let length = orthogonalise(&mut next, &basis);
         ritz.diagonal.push(diagonal);
-        let exhausted = length <= EXHAUSTED * ritz.diagonal[0] || basis.len() + 1 == graph.vertices();
+        // Nothing new is left to see: the residual is then within its bound whatever the eigenvector.
+        let exhausted = length <= RELATIVE_RESIDUAL * ritz.diagonal[0] || basis.len() + 1 == graph.vertices();
         if exhausted || basis.len().is_multiple_of(STEPS_BETWEEN_LOOKS) {
             let greatest = ritz.greatest_eigenvalue();
             if exhausted || length * ritz.last_component(greatest) <= RELATIVE_RESIDUAL * greatest {
@@ -60,11 +58,15 @@ fn centre(vector: &mut [f64]) {
     vector.iter_mut().for_each(|x| *x -= mean);
 }
 
-/// Makes `vector` orthogonal to all of `basis`, twice since once loses digits, and gives the length that is left.
+/// Makes `vector` orthogonal to all of `basis` and to the constant vectors, twice since once loses digits, and gives
+/// the length that is left.
 fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>]) -> f64 {
-    for known in basis.iter().chain(basis) {
-        let share = dot(vector, known);
-        vector.iter_mut().zip(known).for_each(|(x, y)| *x -= share * y);
+    for _ in 0..2 {
+        centre(vector);
+        for known in basis {
+            let share = dot(vector, known);
+            vector.iter_mut().zip(known).for_each(|(x, y)| *x -= share * y);
+        }
     }
     dot(vector, vector).sqrt()
 }
