@@ -15,7 +15,7 @@ pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut 
     let parsed = match all(overrides) {
         Ok(parsed) => parsed,
         Err(report) => {
-            write!(out, "{}", report.render(style()))?;
+            write!(out, "{}", report.render(style(&io::stdout())))?;
             return Ok(false);
         }
     };
@@ -26,7 +26,7 @@ pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut 
             Ok((text, scenario)) => accepted.push((file, text, scenario)),
             Err(report) => {
                 well = false;
-                write!(out, "{}", report.render(style()))?;
+                write!(out, "{}", report.render(style(&io::stdout())))?;
             }
         }
     }
@@ -41,7 +41,7 @@ pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut 
 }
 
 /// Every override, or what is wrong with each that is none.
-fn all(overrides: &[String]) -> Result<Vec<Override>, Report> {
+pub fn all(overrides: &[String]) -> Result<Vec<Override>, Report> {
     let mut parsed = Vec::new();
     let mut diagnostics: Vec<Diagnostic> = Vec::new();
     for text in overrides {
@@ -77,10 +77,10 @@ fn write_line(file: &Path, scenario: &Scenario, out: &mut dyn Write) -> io::Resu
     writeln!(out, "ok {}: {name}, {trials}, {robots}", file.display())
 }
 
-/// Colours on a terminal, unless the user has switched them off.
-fn style() -> Style {
+/// Colours where `stream` is a terminal, unless the user has switched them off.
+pub fn style(stream: &impl IsTerminal) -> Style {
     Style {
-        colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+        colour: stream.is_terminal() && std::env::var_os("NO_COLOR").is_none(),
         ..Style::PLAIN
     }
 }

@@ -3,6 +3,8 @@
 //! Buckets are log-linear: every power of two is cut into 128 equal buckets, and spans below 256 ns have one each. A
 //! bucket is thus never wider than 1/128 of its lower end, whatever the latency.
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::Span;
 
 /// Binary digits of a latency that its bucket keeps, beside the leading one.
@@ -13,7 +15,7 @@ const PER_OCTAVE: u64 = 1 << DIGITS;
 const BUCKETS: usize = (PER_OCTAVE as usize) * (64 - DIGITS as usize + 1);
 
 /// Counts of latencies, in nanoseconds; least, greatest, number and sum are exact.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LatencyHistogram {
     counts: Vec<u64>,
     count: u64,

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Pose;
 use crate::radio::LossCause;
@@ -9,7 +11,7 @@ use crate::radio::LossCause;
 use super::latency::LatencyHistogram;
 
 /// Everything that one trial leaves behind.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrialRecord {
     /// Number of the trial, from 0.
     pub trial: u32,
@@ -68,7 +70,7 @@ impl TrialRecord {
 }
 
 /// How a mission ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
     /// Every target was held with its links from this control step on, for the time that the scenario asks.
     Completed {
@@ -82,7 +84,7 @@ pub enum Outcome {
 }
 
 /// Frames of one topic by fate, counted a copy an intended receiver.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TopicFates {
     /// Copies that transmissions offered to robots in range.
     pub offered: u64,
@@ -132,7 +134,7 @@ impl fmt::Display for TopicFates {
 }
 
 /// Frames and their bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Volume {
     /// Number of frames.
     pub frames: u64,
@@ -151,7 +153,7 @@ impl Volume {
 }
 
 /// Traffic of one robot while in one role, on one topic.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrafficRow {
     /// The robot.
     pub robot: ActorId,
@@ -168,7 +170,7 @@ pub struct TrafficRow {
 }
 
 /// The swarm's graph at one instant: robots within range of each other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConnectivitySample {
     /// When.
     pub at: SimTime,
@@ -183,7 +185,7 @@ pub struct ConnectivitySample {
 }
 
 /// A robot at the end of a trial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RobotState {
     /// Where it is.
     pub pose: Pose,
