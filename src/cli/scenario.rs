@@ -121,7 +121,11 @@ impl From<Drawn> for Pictures {
 /// If the input is wrong, the run fails or is interrupted, or the results cannot be written.
 pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
     let text = contents(&arguments.file)?;
-    let scenario = parse(&arguments.file.display().to_string(), &text, &check::all(&arguments.settings())?)?;
+    let scenario = parse(
+        &arguments.file.display().to_string(),
+        &text,
+        &check::all(&arguments.settings())?,
+    )?;
     let default_out = || PathBuf::from("results").join(&scenario.name);
     let folder = Folder::new(arguments.out.clone().unwrap_or_else(default_out));
     let (summary, manifest) = match finished(&folder, &scenario, arguments.force)? {
@@ -131,7 +135,15 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
         }
         None => simulate(&folder, &scenario, arguments)?,
     };
-    print(&Finished { question: question(&text), folder, summary, manifest }, arguments)
+    print(
+        &Finished {
+            question: question(&text),
+            folder,
+            summary,
+            manifest,
+        },
+        arguments,
+    )
 }
 
 impl ScenarioArguments {
@@ -153,7 +165,9 @@ impl ScenarioArguments {
 /// The manifest of the results asked for, if they are there and finished. The folder is then ready for the others: it
 /// holds nothing, or finished trials of the same experiment.
 fn finished(folder: &Folder, scenario: &Scenario, force: bool) -> Result<Option<Manifest>, Failure> {
-    let Contents::Results(there) = folder.contents()? else { return Ok(None) };
+    let Contents::Results(there) = folder.contents()? else {
+        return Ok(None);
+    };
     if force {
         // Opening the trials makes sure that nobody is running them.
         drop(Parts::open(&folder.trials())?);
@@ -184,7 +198,10 @@ fn simulate(
     let experiment = Experiment {
         trials: scenario.trials,
         seed: scenario.seed,
-        jobs: arguments.jobs.or_else(|| thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN),
+        jobs: arguments
+            .jobs
+            .or_else(|| thread::available_parallelism().ok())
+            .unwrap_or(NonZeroUsize::MIN),
         parts: &parts,
         stop: &stop,
     };
@@ -222,7 +239,10 @@ fn leave(folder: &Folder, experiment: &Experiment, scenario: &Scenario) -> Resul
 
 fn failure(error: ExperimentError<TrialError>) -> Failure {
     match error {
-        ExperimentError::Trial { source: TrialError::Deploy(error), .. } => Failure::Input(format!("error: {error}")),
+        ExperimentError::Trial {
+            source: TrialError::Deploy(error),
+            ..
+        } => Failure::Input(format!("error: {error}")),
         ExperimentError::Trial { .. } => Failure::other(&error),
         ExperimentError::Parts(error) => error.into(),
     }

@@ -96,14 +96,23 @@ impl Folder {
         };
         let mut names = Vec::new();
         for entry in entries {
-            names.push(entry.map_err(failed("read", &self.dir))?.file_name().to_string_lossy().into_owned());
+            names.push(
+                entry
+                    .map_err(failed("read", &self.dir))?
+                    .file_name()
+                    .to_string_lossy()
+                    .into_owned(),
+            );
         }
         if names.iter().any(|name| name == MANIFEST) {
             return self.manifest().map(Contents::Results);
         }
         match names.iter().filter(|&name| name != TRIALS).min() {
             None => Ok(Contents::Nothing),
-            Some(found) => Err(FolderError::Foreign { dir: self.dir.clone(), found: found.clone() }),
+            Some(found) => Err(FolderError::Foreign {
+                dir: self.dir.clone(),
+                found: found.clone(),
+            }),
         }
     }
 
@@ -123,7 +132,11 @@ impl Folder {
     pub fn clear(&self, manifest: &Manifest) -> Result<(), FolderError> {
         self.drop_trials()?;
         // A name with a separator never came from desim: it must not reach out of the folder.
-        let named = manifest.files.keys().filter(|name| !name.contains(['/', '\\'])).map(String::as_str);
+        let named = manifest
+            .files
+            .keys()
+            .filter(|name| !name.contains(['/', '\\']))
+            .map(String::as_str);
         for name in named.chain([MANIFEST]) {
             let path = self.dir.join(name);
             gone(fs::remove_file(&path)).map_err(failed("delete", &path))?;
@@ -182,7 +195,10 @@ impl Folder {
     fn manifest(&self) -> Result<Manifest, FolderError> {
         let path = self.dir.join(MANIFEST);
         let bytes = fs::read(&path).map_err(failed("read", &path))?;
-        serde_json::from_slice(&bytes).map_err(|error| FolderError::Unreadable { path, reason: error.to_string() })
+        serde_json::from_slice(&bytes).map_err(|error| FolderError::Unreadable {
+            path,
+            reason: error.to_string(),
+        })
     }
 }
 
@@ -210,7 +226,10 @@ fn measure(path: &Path) -> io::Result<FileEntry> {
     loop {
         let read = file.read(&mut chunk)?;
         if read == 0 {
-            return Ok(FileEntry { bytes, xxh3_128: format!("{:032x}", hash.digest128()) });
+            return Ok(FileEntry {
+                bytes,
+                xxh3_128: format!("{:032x}", hash.digest128()),
+            });
         }
         hash.update(&chunk[..read]);
         bytes += read as u64;

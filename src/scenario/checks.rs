@@ -73,7 +73,11 @@ fn counts(scenario: &Scenario) -> Vec<Problem> {
     let mut count = |path: &str, value: u32, most: u32| {
         if !(1..=most).contains(&value) {
             let message = format!("{value} is out of range for `{path}`");
-            found.push(Problem::new(path, message, format!("expected a whole number from 1 to {most}")));
+            found.push(Problem::new(
+                path,
+                message,
+                format!("expected a whole number from 1 to {most}"),
+            ));
         }
     };
     count("trials", scenario.trials, limits::TRIALS);
@@ -94,12 +98,14 @@ fn periods(scenario: &Scenario) -> Vec<Problem> {
     let periods = [
         ("control.period", scenario.control.period),
         ("motion.tick", scenario.motion.tick),
-        ("metrics.sample_interval", scenario.metrics.sample_interval),
         ("gossip.status.interval", gossip.status.interval),
         ("gossip.strand.interval", gossip.strand.interval),
         ("gossip.request.interval", gossip.request.interval),
     ];
-    let mut found: Vec<_> = periods.into_iter().filter_map(|(path, period)| too_short(path, period)).collect();
+    let mut found: Vec<_> = periods
+        .into_iter()
+        .filter_map(|(path, period)| too_short(path, period))
+        .collect();
     let time_limit = scenario.time_limit.get();
     if time_limit > limits::SECONDS {
         let message = format!("a time limit of {time_limit} s is out of range");
@@ -113,7 +119,11 @@ fn too_short(path: &str, period: Positive) -> Option<Problem> {
     let period = period.get();
     (period < limits::SHORTEST_PERIOD).then(|| {
         let message = format!("`{path}` of {period} s is too short");
-        Problem::new(path, message, format!("expected at least {} s", limits::SHORTEST_PERIOD))
+        Problem::new(
+            path,
+            message,
+            format!("expected at least {} s", limits::SHORTEST_PERIOD),
+        )
     })
 }
 
@@ -123,7 +133,10 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
     let tick = scenario.motion.tick.get();
     let time_limit = scenario.time_limit.get();
     let hold = scenario.metrics.hold.get();
-    if !Span::from_secs(period).as_nanos().is_multiple_of(Span::from_secs(tick).as_nanos()) {
+    if !Span::from_secs(period)
+        .as_nanos()
+        .is_multiple_of(Span::from_secs(tick).as_nanos())
+    {
         let message = format!("a control period of {period} s is no whole number of motion ticks of {tick} s");
         let help = "make `control.period` a multiple of `motion.tick`";
         found.push(Problem::new("control.period", message, help).with(&["motion.tick"]));
@@ -134,7 +147,8 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         found.push(Problem::new("time_limit", message, help).with(&["control.period"]));
     }
     if matches!(scenario.protocol, ProtocolConfig::Backbone(_)) && hold >= time_limit {
-        let message = format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
+        let message =
+            format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
         let help = "make `time_limit` longer, or `metrics.hold` shorter";
         found.push(Problem::new("time_limit", message, help).with(&["metrics.hold"]));
     }
@@ -146,7 +160,13 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
     let time_limit = scenario.time_limit.get();
     let steps = time_limit / scenario.control.period.get();
     let ticks = time_limit / scenario.motion.tick.get();
-    let positions = robots * (time_limit / scenario.metrics.sample_interval.get());
+    let sample_interval = scenario.metrics.sample_interval.get();
+    let samples = if sample_interval > 0.0 {
+        time_limit / sample_interval
+    } else {
+        0.0
+    };
+    let positions = robots * samples;
     let copies = robots * neighbours(scenario);
     let bound = |path: &str, also: &[&str], what: &str, value: f64, most: f64, help: &str| {
         (value > most).then(|| {

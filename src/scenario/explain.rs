@@ -38,7 +38,11 @@ pub fn explain(error: &SpannedError, reached: &FieldPath, whole: bool, root: &No
         Error::ExpectedDifferentStructName { found, .. } => reader.wrong_name(found, reached),
         Error::Message(message) => reader.refused(message, reached),
         other => {
-            let path = if whole { reached.clone() } else { path_at(root, reader.span.start, text) };
+            let path = if whole {
+                reached.clone()
+            } else {
+                path_at(root, reader.span.start, text)
+            };
             reader.mismatch(other, path)
         }
     }
@@ -97,7 +101,11 @@ impl Reader<'_> {
     fn duplicate(&self, name: &str, reached: &FieldPath) -> Finding {
         let path = reached.join(Step::Field(name.into()));
         let place = follow(self.root, reached, self.text);
-        let first = place.node.group.as_ref().and_then(|group| field(group, name, self.text));
+        let first = place
+            .node
+            .group
+            .as_ref()
+            .and_then(|group| field(group, name, self.text));
         let line = first.map_or(0, |first| line_of(self.text, first.start()));
         Finding {
             message: format!("field `{name}` is given twice in {}", owner(reached)),
@@ -161,15 +169,20 @@ impl Reader<'_> {
                 format!("`{path}` cannot be `{found}`: expected {expected}"),
                 meaning(&path),
             ),
-            Some(expected) if is_mismatch(error) => {
-                (format!("`{path}` cannot be `{found}`"), Some(format!("expected {expected}")))
-            }
+            Some(expected) if is_mismatch(error) => (
+                format!("`{path}` cannot be `{found}`"),
+                Some(format!("expected {expected}")),
+            ),
             _ => (format!("`{path}` cannot be `{found}`: {error}"), meaning(&path)),
         };
         Finding {
             message,
             help,
-            span: if node.group.is_none() { node.span.clone() } else { head(node) },
+            span: if node.group.is_none() {
+                node.span.clone()
+            } else {
+                head(node)
+            },
             path,
             label: "here".into(),
         }
@@ -235,7 +248,9 @@ fn excerpt(node: &Node, text: &str) -> String {
 /// `, did you mean ...?` if a known name is near.
 pub fn nearest(found: &str, known: &[&str]) -> String {
     let lower = found.to_lowercase();
-    let scored = known.iter().map(|name| (strsim::jaro_winkler(&lower, &name.to_lowercase()), *name));
+    let scored = known
+        .iter()
+        .map(|name| (strsim::jaro_winkler(&lower, &name.to_lowercase()), *name));
     match scored.max_by(|a, b| a.0.total_cmp(&b.0)) {
         Some((score, name)) if score > 0.75 => format!(", did you mean `{name}`?"),
         _ => String::new(),

@@ -95,7 +95,10 @@ mod tests {
 
     #[test]
     fn the_question_is_the_first_comment_joined_to_one_line() {
-        assert_eq!(question("// Does it\n// work?\n//\n// Notes.\nScenario()").as_deref(), Some("Does it work?"));
+        assert_eq!(
+            question("// Does it\n// work?\n//\n// Notes.\nScenario()").as_deref(),
+            Some("Does it work?")
+        );
         assert_eq!(question("Scenario() // no"), None);
         assert_eq!(question(""), None);
     }

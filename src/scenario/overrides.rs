@@ -244,8 +244,14 @@ impl Edit<'_> {
     fn value(&self) -> Piece {
         let span = self.given.value.clone();
         let given = &self.given.text[span.clone()];
-        let bare = given.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter));
-        if bare && Shape::scenario().at(&self.given.path).is_some_and(|shape| shape.is_text()) {
+        let bare = given
+            .chars()
+            .all(|letter| letter.is_alphanumeric() || "_-".contains(letter));
+        if bare
+            && Shape::scenario()
+                .at(&self.given.path)
+                .is_some_and(|shape| shape.is_text())
+        {
             let index = self.index;
             return Piece {
                 text: format!("{given:?}"),

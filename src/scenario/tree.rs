@@ -342,7 +342,10 @@ mod tests {
 
     fn faults(text: &str) -> Vec<(usize, String)> {
         let found = read(text).1;
-        found.into_iter().map(|fault| (fault.span.start, fault.message)).collect()
+        found
+            .into_iter()
+            .map(|fault| (fault.span.start, fault.message))
+            .collect()
     }
 
     #[test]
@@ -371,7 +374,10 @@ mod tests {
 
     #[test]
     fn an_open_bracket_is_named_where_it_opens() {
-        assert_eq!(faults("(a: [1, 2)"), [(9, "`)` does not close the `[` of line 1".into())]);
+        assert_eq!(
+            faults("(a: [1, 2)"),
+            [(9, "`)` does not close the `[` of line 1".into())]
+        );
         assert_eq!(faults("S(a: 1"), [(1, "`(` is never closed".into())]);
     }
 

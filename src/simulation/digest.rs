@@ -22,7 +22,9 @@ impl Digest {
             Wake::Timer(id) => 1 + u64::from(id.0),
             Wake::Reception => u64::MAX,
         };
-        let velocity = output.velocity.map_or([u64::MAX; 2], |v| [v.x.to_bits(), v.y.to_bits()]);
+        let velocity = output
+            .velocity
+            .map_or([u64::MAX; 2], |v| [v.x.to_bits(), v.y.to_bits()]);
         self.words(&[
             now.as_nanos(),
             u64::from(robot.0),
