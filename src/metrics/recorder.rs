@@ -347,7 +347,10 @@ mod tests {
         assert!((complete.lambda2 - 3.0).abs() < 1e-9, "a triangle");
         assert_eq!((apart.lambda2, apart.components), (0.0, 3));
         assert_eq!((&path.roles[..], &complete.roles[..]), (&[3, 0][..], &[2, 1][..]));
-        assert_eq!(record.trajectories[1].1[2], [1.0, 0.0]);
+        assert_eq!(
+            record.trajectories[1].1[2].map(f32::to_bits),
+            [1.0_f32, 0.0].map(f32::to_bits)
+        );
         assert_eq!(record.robots[1].role, 1);
     }
 
