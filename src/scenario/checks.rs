@@ -136,7 +136,7 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
     if matches!(scenario.protocol, ProtocolConfig::Backbone(_)) && hold >= time_limit {
         let message = format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
         let help = "make `time_limit` longer, or `metrics.hold` shorter";
-        found.push(Problem::new("time_limit", message, help).with(&["metrics.hold"]));
+        found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
     }
     found
 }

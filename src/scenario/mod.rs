@@ -9,6 +9,8 @@
 mod checks;
 mod explain;
 mod file;
+#[cfg(test)]
+mod generated;
 mod limits;
 mod overrides;
 mod path;

@@ -150,7 +150,7 @@ impl Edit<'_> {
                 source.replace(&place.node.span, self.nested(place.steps));
                 Ok(())
             }
-            Step::Field(name) if contents(place.node).is_some() => {
+            Step::Field(name) if takes_fields(place.node) => {
                 let added = self.added(name, place.steps, resolved)?;
                 insert(place.node, source, added);
                 Ok(())
@@ -260,6 +260,11 @@ impl Edit<'_> {
             },
         }
     }
+}
+
+/// Whether `node` is a struct, and not a list or a variant that holds a lone value.
+fn takes_fields(node: &Node) -> bool {
+    contents(node).is_some_and(|group| group.items.iter().all(|item| item.key.is_some()))
 }
 
 /// Adds a field at the end of what `node` holds.

@@ -50,7 +50,7 @@ pub fn parse(name: &str, text: &str, overrides: &[Override]) -> Result<Scenario,
 }
 
 /// What serde makes of `text`.
-fn typed(text: &str) -> Result<Scenario, Failure> {
+pub(super) fn typed(text: &str) -> Result<Scenario, Failure> {
     let at_start = |error: SpannedError| Failure {
         error,
         path: FieldPath::default(),
@@ -72,12 +72,28 @@ fn typed(text: &str) -> Result<Scenario, Failure> {
 }
 
 /// An error of serde, with the path that it had reached.
-struct Failure {
-    error: SpannedError,
+pub(super) struct Failure {
+    pub(super) error: SpannedError,
     path: FieldPath,
     /// Whether the path is known to its last step.
     whole: bool,
 }
+
+/// How a text is changed so that the rest of it can be read. What stands before it keeps its place.
+enum Repair {
+    /// Without this field.
+    LeaveOut(Span),
+    /// With this field, at the end of the scenario.
+    Add(usize, String),
+}
+
+/// Fields that every scenario must have, as they are read on where one is missing: nothing is reported of them.
+const STAND_INS: [(&str, &str); 4] = [
+    ("name", "name: \"scenario\""),
+    ("time_limit", "time_limit: 100.0"),
+    ("swarm", "swarm: (robots: 10, deploy: Uniform)"),
+    ("protocol", "protocol: Backbone(targets: Ring(count: 1, radius: 1.0))"),
+];
 
 struct Reader<'a> {
     name: &'a str,
@@ -98,17 +114,16 @@ impl Reader<'_> {
                     self.check(&scenario, &blanked);
                     return Some(scenario);
                 }
-                Err(failure) => {
-                    let span = self.fault(&failure, &text, &mut blanked)?;
-                    blank(&mut text, &span);
-                }
+                Err(failure) => match self.fault(&failure, &text, &mut blanked)? {
+                    Repair::LeaveOut(span) => blank(&mut text, &span),
+                    Repair::Add(at, field) => text.insert_str(at, &field),
+                },
             }
         }
     }
 
-    /// Reports a failure, unless an earlier one caused it. Answers the field to leave out so that the rest can be read,
-    /// if there is one.
-    fn fault(&mut self, failure: &Failure, text: &str, blanked: &mut Vec<FieldPath>) -> Option<Span> {
+    /// Reports a failure, unless an earlier one caused it. Answers how to read the rest without it, if there is a way.
+    fn fault(&mut self, failure: &Failure, text: &str, blanked: &mut Vec<FieldPath>) -> Option<Repair> {
         let (root, faults) = tree::read(text);
         let Some(root) = root.filter(|_| faults.is_empty()) else {
             self.form(&faults, text);
@@ -123,14 +138,22 @@ impl Reader<'_> {
         };
         let path = field.map(|field| path_at(&root, field.start(), text));
         let caused = missing && blanked.iter().any(|path| stands_for(path, &finding.path));
+        let finding_path = finding.path.clone();
         if !caused {
             self.add(finding);
         }
         if self.diagnostics.len() >= limits::DIAGNOSTICS {
             return None;
         }
+        if let (Error::MissingStructField { field, .. }, None) = (&failure.error.code, field) {
+            let (_, stand_in) = STAND_INS.iter().find(|(name, _)| name == field)?;
+            blanked.push(finding_path);
+            let group = root.group?;
+            let comma = if group.items.last().is_some_and(|last| !last.comma) { ", " } else { "" };
+            return Some(Repair::Add(group.inside.end, format!("{comma}{stand_in}")));
+        }
         blanked.push(path?);
-        field.map(|field| field.start()..field.end)
+        field.map(|field| Repair::LeaveOut(field.start()..field.end))
     }
 
     /// Reports what is wrong with the form of the text.
@@ -210,7 +233,7 @@ fn stands_for(blanked: &FieldPath, missing: &FieldPath) -> bool {
     let (blanked, missing) = (blanked.plain(), missing.plain());
     match (blanked.0.last(), missing.0.last()) {
         (Some(Step::Field(found)), Some(Step::Field(known))) if blanked.parent() == missing.parent() => {
-            found == known || !nearest(found, &[known]).is_empty()
+            found == known || nearest(found, &[known]).is_some()
         }
         _ => false,
     }

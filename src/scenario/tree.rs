@@ -281,19 +281,25 @@ impl Reader<'_> {
                 item.comma = true;
             }
             Some(Kind::Close(_)) | None => {}
-            Some(_) => {
-                let before = self.text[self.here()].to_owned();
-                let span = self.here();
-                let after = &self.text[item.value.span.clone()];
-                let help = if after.len() <= 40 && !after.contains('\n') {
-                    format!("write `,` after `{after}`, or remove `{before}`")
-                } else {
-                    format!("write `,` before `{before}`")
-                };
-                self.fault(span, format!("missing `,` before `{before}`"), &help);
-            }
+            Some(_) => self.missing_comma(&item.value),
         }
         Some(item)
+    }
+
+    fn missing_comma(&mut self, value: &Node) {
+        let span = self.here();
+        let before = self.text[span.clone()].to_owned();
+        let after = &self.text[value.span.clone()];
+        let comma = if after.len() <= 40 && !after.contains('\n') {
+            format!("write `,` after `{after}`")
+        } else {
+            format!("write `,` before `{before}`")
+        };
+        let help = match self.peek_second() {
+            Some(Kind::Colon) => comma,
+            _ => format!("{comma}, or remove `{before}`; numbers have no units"),
+        };
+        self.fault(span, format!("missing `,` before `{before}`"), &help);
     }
 
     fn key(&mut self) -> Option<Span> {
