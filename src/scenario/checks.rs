@@ -32,6 +32,11 @@ impl Problem {
         }
     }
 
+    /// Every field that it depends on, first the one best changed.
+    pub fn involved(&self) -> impl Iterator<Item = &FieldPath> {
+        std::iter::once(&self.path).chain(&self.also)
+    }
+
     fn with(mut self, also: &[&str]) -> Self {
         self.also = also.iter().map(|path| FieldPath::of(path)).collect();
         self
@@ -40,15 +45,15 @@ impl Problem {
 
 /// Everything wrong with `scenario`.
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
-    let mut found = Vec::new();
-    found.extend(name(scenario));
-    found.extend(counts(scenario));
+    let mut found = counts(scenario);
     found.extend(periods(scenario));
     if found.is_empty() {
-        // Sizes are computed from counts and periods that hold.
+        // Times and sizes are computed from counts and periods that hold.
         found.extend(times(scenario));
         found.extend(sizes(scenario));
     }
+    found.extend(name(scenario));
+    found.extend(places(scenario));
     found
 }
 
@@ -73,20 +78,28 @@ fn counts(scenario: &Scenario) -> Vec<Problem> {
     let mut count = |path: &str, value: u32, most: u32| {
         if !(1..=most).contains(&value) {
             let message = format!("{value} is out of range for `{path}`");
-            found.push(Problem::new(path, message, format!("expected a whole number from 1 to {most}")));
+            found.push(Problem::new(
+                path,
+                message,
+                format!("expected a whole number from 1 to {most}"),
+            ));
         }
     };
     count("trials", scenario.trials, limits::TRIALS);
     count("swarm.robots", scenario.swarm.robots, limits::ROBOTS);
-    if let DeployConfig::At(places) = &scenario.swarm.deploy {
-        let robots = scenario.swarm.robots;
-        if places.len() != robots as usize {
-            let message = format!("places: {}, robots: {robots}", places.len());
-            let help = "list one place for each robot, or change `swarm.robots`";
-            found.push(Problem::new("swarm.deploy", message, help).with(&["swarm.robots"]));
-        }
-    }
     found
+}
+
+fn places(scenario: &Scenario) -> Option<Problem> {
+    let DeployConfig::At(places) = &scenario.swarm.deploy else {
+        return None;
+    };
+    let robots = scenario.swarm.robots;
+    (places.len() != robots as usize).then(|| {
+        let message = format!("places: {}, robots: {robots}", places.len());
+        let help = "list one place for each robot, or change `swarm.robots`";
+        Problem::new("swarm.deploy", message, help).with(&["swarm.robots"])
+    })
 }
 
 fn periods(scenario: &Scenario) -> Vec<Problem> {
@@ -99,7 +112,10 @@ fn periods(scenario: &Scenario) -> Vec<Problem> {
         ("gossip.strand.interval", gossip.strand.interval),
         ("gossip.request.interval", gossip.request.interval),
     ];
-    let mut found: Vec<_> = periods.into_iter().filter_map(|(path, period)| too_short(path, period)).collect();
+    let mut found: Vec<_> = periods
+        .into_iter()
+        .filter_map(|(path, period)| too_short(path, period))
+        .collect();
     let time_limit = scenario.time_limit.get();
     if time_limit > limits::SECONDS {
         let message = format!("a time limit of {time_limit} s is out of range");
@@ -113,7 +129,11 @@ fn too_short(path: &str, period: Positive) -> Option<Problem> {
     let period = period.get();
     (period < limits::SHORTEST_PERIOD).then(|| {
         let message = format!("`{path}` of {period} s is too short");
-        Problem::new(path, message, format!("expected at least {} s", limits::SHORTEST_PERIOD))
+        Problem::new(
+            path,
+            message,
+            format!("expected at least {} s", limits::SHORTEST_PERIOD),
+        )
     })
 }
 
@@ -123,7 +143,10 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
     let tick = scenario.motion.tick.get();
     let time_limit = scenario.time_limit.get();
     let hold = scenario.metrics.hold.get();
-    if !Span::from_secs(period).as_nanos().is_multiple_of(Span::from_secs(tick).as_nanos()) {
+    if !Span::from_secs(period)
+        .as_nanos()
+        .is_multiple_of(Span::from_secs(tick).as_nanos())
+    {
         let message = format!("a control period of {period} s is no whole number of motion ticks of {tick} s");
         let help = "make `control.period` a multiple of `motion.tick`";
         found.push(Problem::new("control.period", message, help).with(&["motion.tick"]));
@@ -134,7 +157,8 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         found.push(Problem::new("time_limit", message, help).with(&["control.period"]));
     }
     if matches!(scenario.protocol, ProtocolConfig::Backbone(_)) && hold >= time_limit {
-        let message = format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
+        let message =
+            format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
         let help = "make `time_limit` longer, or `metrics.hold` shorter";
         found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
     }

@@ -41,7 +41,11 @@ pub fn explain(error: &SpannedError, reached: &FieldPath, whole: bool, root: &No
         Error::ExpectedDifferentStructName { found, .. } => reader.wrong_name(found, reached),
         Error::Message(message) => reader.refused(message, reached),
         other => {
-            let path = if whole { reached.clone() } else { path_at(root, reader.span.start, text) };
+            let path = if whole {
+                reached.clone()
+            } else {
+                path_at(root, reader.span.start, text)
+            };
             reader.mismatch(other, path)
         }
     }
@@ -72,7 +76,10 @@ impl Reader<'_> {
     fn unknown_variant(&self, found: &str, known: &[&str], path: &FieldPath) -> Finding {
         let expected = Shape::scenario().at(path).map(Shape::expected);
         Finding {
-            message: format!("`{path}` cannot be `{found}`{}", did_you_mean(nearest(found, known).as_slice())),
+            message: format!(
+                "`{path}` cannot be `{found}`{}",
+                did_you_mean(nearest(found, known).as_slice())
+            ),
             help: Some(format!("expected {}", expected.unwrap_or_else(|| known.join(", ")))),
             path: path.clone(),
             span: self.span.clone(),
@@ -98,7 +105,11 @@ impl Reader<'_> {
     fn duplicate(&self, name: &str, reached: &FieldPath) -> Finding {
         let path = reached.join(Step::Field(name.into()));
         let place = follow(self.root, reached, self.text);
-        let first = place.node.group.as_ref().and_then(|group| field(group, name, self.text));
+        let first = place
+            .node
+            .group
+            .as_ref()
+            .and_then(|group| field(group, name, self.text));
         let line = first.map_or(0, |first| line_of(self.text, first.start()));
         Finding {
             message: format!("field `{name}` is given twice in {}", owner(reached)),
@@ -162,15 +173,20 @@ impl Reader<'_> {
                 format!("`{path}` cannot be `{found}`: expected {expected}"),
                 meaning(&path),
             ),
-            Some(expected) if is_mismatch(error) => {
-                (format!("`{path}` cannot be `{found}`"), Some(format!("expected {expected}")))
-            }
+            Some(expected) if is_mismatch(error) => (
+                format!("`{path}` cannot be `{found}`"),
+                Some(format!("expected {expected}")),
+            ),
             _ => (format!("`{path}` cannot be `{found}`: {error}"), meaning(&path)),
         };
         Finding {
             message,
             help,
-            span: if node.group.is_none() { node.span.clone() } else { head(node) },
+            span: if node.group.is_none() {
+                node.span.clone()
+            } else {
+                head(node)
+            },
             path,
             label: "here".into(),
         }
@@ -236,7 +252,9 @@ fn excerpt(node: &Node, text: &str) -> String {
 /// The known name that is nearest to `found`, if one is near.
 pub fn nearest<'k>(found: &str, known: &[&'k str]) -> Option<&'k str> {
     let lower = found.to_lowercase();
-    let scored = known.iter().map(|name| (strsim::jaro_winkler(&lower, &name.to_lowercase()), *name));
+    let scored = known
+        .iter()
+        .map(|name| (strsim::jaro_winkler(&lower, &name.to_lowercase()), *name));
     let best = scored.max_by(|a, b| a.0.total_cmp(&b.0));
     best.filter(|(score, _)| *score > NEAR).map(|(_, name)| name)
 }

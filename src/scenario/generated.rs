@@ -37,7 +37,10 @@ fn value(schema: &Value, root: &Value, random: &mut impl Rng) -> Value {
 
 /// Any magnitude within the bounds, whole numbers and bounds themselves included.
 fn number(schema: &Value, random: &mut impl Rng) -> Value {
-    let low = schema["minimum"].as_f64().or(schema["exclusiveMinimum"].as_f64()).unwrap_or(f64::MIN);
+    let low = schema["minimum"]
+        .as_f64()
+        .or(schema["exclusiveMinimum"].as_f64())
+        .unwrap_or(f64::MIN);
     let high = schema["maximum"].as_f64().unwrap_or(f64::MAX);
     let exponent = random.random_range(-300..300);
     let drawn = match random.random_range(0..4) {
@@ -64,7 +67,9 @@ fn array(schema: &Value, root: &Value, random: &mut impl Rng) -> Value {
     if let Some(items) = schema["prefixItems"].as_array() {
         return items.iter().map(|item| value(item, root, random)).collect();
     }
-    (0..random.random_range(0..4)).map(|_| value(&schema["items"], root, random)).collect()
+    (0..random.random_range(0..4))
+        .map(|_| value(&schema["items"], root, random))
+        .collect()
 }
 
 /// All required fields, and each of the others as often as not.
@@ -85,7 +90,9 @@ fn object(schema: &Value, root: &Value, random: &mut impl Rng) -> Value {
 
 fn scenario(seed: u64) -> Scenario {
     let root = json_schema().to_value();
-    let mut random: Philox = Streams::new(seed, 0).keyed(Purpose::new("scenario.generated")).at(0, 0, 0);
+    let mut random: Philox = Streams::new(seed, 0)
+        .keyed(Purpose::new("scenario.generated"))
+        .at(0, 0, 0);
     let json = value(&root, &root, &mut random);
     serde_json::from_value(json.clone()).unwrap_or_else(|error| panic!("{error}: {json:#}"))
 }

@@ -39,7 +39,7 @@ pub fn parse(name: &str, text: &str, overrides: &[Override]) -> Result<Scenario,
     for (index, given) in overrides.iter().enumerate() {
         let resolved = typed(reader.source.text()).ok().map(|scenario| to_ron(&scenario));
         if let Err(misfit) = given.apply(index, &mut reader.source, resolved.as_deref()) {
-            reader.diagnostics.push(misfit);
+            reader.diagnostics.extend(misfit.diagnostics);
         }
     }
     let scenario = reader.scenario();
@@ -50,11 +50,13 @@ pub fn parse(name: &str, text: &str, overrides: &[Override]) -> Result<Scenario,
 }
 
 /// What serde makes of `text`.
-pub(super) fn typed(text: &str) -> Result<Scenario, Failure> {
-    let at_start = |error: SpannedError| Failure {
-        error,
-        path: FieldPath::default(),
-        whole: true,
+pub(super) fn typed(text: &str) -> Result<Scenario, Box<Failure>> {
+    let at_start = |error: SpannedError| {
+        Box::new(Failure {
+            error,
+            path: FieldPath::default(),
+            whole: true,
+        })
     };
     let mut reader = ron::Deserializer::from_str_with_options(text, &options()).map_err(at_start)?;
     let mut track = serde_path_to_error::Track::new();
@@ -63,11 +65,11 @@ pub(super) fn typed(text: &str) -> Result<Scenario, Failure> {
     read.map_err(|code| {
         let path = track.path();
         let unknown = |segment: &_| matches!(segment, serde_path_to_error::Segment::Unknown);
-        Failure {
+        Box::new(Failure {
             error: reader.span_error(code),
             path: FieldPath::reached(&path),
             whole: !path.iter().any(unknown),
-        }
+        })
     })
 }
 
@@ -149,7 +151,11 @@ impl Reader<'_> {
             let (_, stand_in) = STAND_INS.iter().find(|(name, _)| name == field)?;
             blanked.push(finding_path);
             let group = root.group?;
-            let comma = if group.items.last().is_some_and(|last| !last.comma) { ", " } else { "" };
+            let comma = if group.items.last().is_some_and(|last| !last.comma) {
+                ", "
+            } else {
+                ""
+            };
             return Some(Repair::Add(group.inside.end, format!("{comma}{stand_in}")));
         }
         blanked.push(path?);
@@ -186,14 +192,14 @@ impl Reader<'_> {
         let (Some(root), _) = tree::read(&text) else {
             return;
         };
+        let stands = |path: &FieldPath| follow(&root, path, &text).steps == path.0.len();
         let caused = |problem: &Problem| {
-            let near = problem.path.parent();
-            let depends = |path: &FieldPath| {
-                path.parent() == near && !near.0.is_empty()
-                    || path.holds(&problem.path)
-                    || problem.also.iter().any(|also| also.holds(path) || path.holds(also))
-            };
-            blanked.iter().any(depends)
+            problem.involved().any(|path| {
+                // A field that the file leaves out may be the one that is misspelt beside it.
+                let misspelt = |left_out: &FieldPath| !stands(path) && left_out.parent() == path.parent();
+                let touches = |left_out: &FieldPath| left_out.holds(path) || path.holds(left_out);
+                blanked.iter().any(|left_out| touches(left_out) || misspelt(left_out))
+            })
         };
         for problem in problems(scenario).into_iter().filter(|problem| !caused(problem)) {
             let finding = between(problem, &root, &text);
@@ -245,7 +251,7 @@ fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
         let place = follow(root, path, text);
         place.steps == path.0.len()
     };
-    let path = std::iter::once(&problem.path).chain(&problem.also).find(stands);
+    let path = problem.involved().find(stands);
     let place = follow(root, path.unwrap_or(&problem.path), text);
     let (span, label) = match (path, place.field) {
         (Some(_), _) if place.node.group.is_none() => (place.node.span.clone(), "here".to_owned()),

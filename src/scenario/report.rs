@@ -58,7 +58,9 @@ impl Place {
     }
 
     fn is_on_a_short_line(&self) -> bool {
-        let before = self.text[..self.span.start].rfind('\n').map_or(0, |newline| newline + 1);
+        let before = self.text[..self.span.start]
+            .rfind('\n')
+            .map_or(0, |newline| newline + 1);
         let line = self.text[before..].find('\n').unwrap_or(self.text.len() - before);
         line <= LONGEST_LINE
     }

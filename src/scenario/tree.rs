@@ -222,8 +222,8 @@ impl Reader<'_> {
 
     /// The innermost bracket that has a line within it which by its indentation belongs outside, and where that is.
     fn swallows(&self, group: &Group) -> Option<(Span, usize)> {
-        let inner = group.items.iter().filter_map(|item| item.value.group.as_ref());
-        inner.filter_map(|inner| self.swallows(inner)).next().or_else(|| {
+        let mut inner = group.items.iter().filter_map(|item| item.value.group.as_ref());
+        inner.find_map(|inner| self.swallows(inner)).or_else(|| {
             let depth = self.indentation(group.opening.start);
             let mut starts = group.items.iter().map(Item::start);
             let outside = starts.find(|start| {
@@ -348,7 +348,10 @@ mod tests {
 
     fn faults(text: &str) -> Vec<(usize, String)> {
         let found = read(text).1;
-        found.into_iter().map(|fault| (fault.span.start, fault.message)).collect()
+        found
+            .into_iter()
+            .map(|fault| (fault.span.start, fault.message))
+            .collect()
     }
 
     #[test]
@@ -377,7 +380,10 @@ mod tests {
 
     #[test]
     fn an_open_bracket_is_named_where_it_opens() {
-        assert_eq!(faults("(a: [1, 2)"), [(9, "`)` does not close the `[` of line 1".into())]);
+        assert_eq!(
+            faults("(a: [1, 2)"),
+            [(9, "`)` does not close the `[` of line 1".into())]
+        );
         assert_eq!(faults("S(a: 1"), [(1, "`(` is never closed".into())]);
     }
 

@@ -28,25 +28,70 @@ struct Field {
 }
 
 const NUMBERS: [&str; 24] = [
-    "-1", "0", "-0.0", "1e308", "-1e308", "1e309", "1e-320", "NaN", "-NaN", "inf", "-inf", "99999999999999999999",
-    "340282366920938463463374607431768211456", "0x10", "0b2", "1_000", "1__0.0_", "1.2.3", "1e", ".", "-", "+5", "1u8",
+    "-1",
+    "0",
+    "-0.0",
+    "1e308",
+    "-1e308",
+    "1e309",
+    "1e-320",
+    "NaN",
+    "-NaN",
+    "inf",
+    "-inf",
+    "99999999999999999999",
+    "340282366920938463463374607431768211456",
+    "0x10",
+    "0b2",
+    "1_000",
+    "1__0.0_",
+    "1.2.3",
+    "1e",
+    ".",
+    "-",
+    "+5",
+    "1u8",
     "3.7",
 ];
 const VALUES: [&str; 22] = [
-    "()", "[]", "{}", "\"\"", "\"text\"", "'c'", "true", "None", "Some(1)", "Some", "Bernoulli", "Bernoulli()",
-    "Bernoulli((0.1))", "Uniform(min: 2.0, max: 1.0)", "Ring(count: 0, radius: 1.0)", "At([])", "At([(0, 0), (0, 0)])",
-    "Heartbeat", "Heartbeat()", "(1, 2, 3)", "r#\"raw\"#", "b\"bytes\"",
+    "()",
+    "[]",
+    "{}",
+    "\"\"",
+    "\"text\"",
+    "'c'",
+    "true",
+    "None",
+    "Some(1)",
+    "Some",
+    "Bernoulli",
+    "Bernoulli()",
+    "Bernoulli((0.1))",
+    "Uniform(min: 2.0, max: 1.0)",
+    "Ring(count: 0, radius: 1.0)",
+    "At([])",
+    "At([(0, 0), (0, 0)])",
+    "Heartbeat",
+    "Heartbeat()",
+    "(1, 2, 3)",
+    "r#\"raw\"#",
+    "b\"bytes\"",
 ];
 const LETTERS: [&str; 22] = [
-    "(", ")", "[", "]", "{", "}", ",", ",,", ":", "::", "=", "\"", "'", "//", "/*", "*/", "#", "é", "🤖", "\u{202e}", "\0",
-    "\r",
+    "(", ")", "[", "]", "{", "}", ",", ",,", ":", "::", "=", "\"", "'", "//", "/*", "*/", "#", "é", "🤖", "\u{202e}",
+    "\0", "\r",
 ];
 
 /// The first `count` mutants.
 pub fn mutants(count: u32) -> Vec<Mutant> {
     let files: Vec<_> = shipped::files()
         .into_iter()
-        .map(|path| (path.display().to_string(), std::fs::read_to_string(path).expect("shipped files can be read")))
+        .map(|path| {
+            (
+                path.display().to_string(),
+                std::fs::read_to_string(path).expect("shipped files can be read"),
+            )
+        })
         .collect();
     let streams = Streams::new(20, 0);
     let drawn = (0..count).map(|number| {
@@ -66,7 +111,8 @@ fn mutant(number: u32, text: &str, random: &mut impl Rng) -> Mutant {
     let entry = field.start..field.value.end;
     let own = &text[entry.clone()];
     let anywhere = place(text, random);
-    let swap = |range: std::ops::Range<usize>, new: &str| format!("{}{new}{}", &text[..range.start], &text[range.end..]);
+    let swap =
+        |range: std::ops::Range<usize>, new: &str| format!("{}{new}{}", &text[..range.start], &text[range.end..]);
     let pick = |list: &[&'static str], random: &mut _| *list.choose(random).expect("the lists are not empty");
     let mut misspelt = None;
     let (label, text) = match number % 18 {
@@ -75,21 +121,49 @@ fn mutant(number: u32, text: &str, random: &mut impl Rng) -> Mutant {
         2 => {
             let name = typo(&field.name, random);
             misspelt = Some((name.clone(), 1 + text[..field.start].matches('\n').count()));
-            ("a misspelt field", swap(field.start..field.start + field.name.len(), &name))
+            (
+                "a misspelt field",
+                swap(field.start..field.start + field.name.len(), &name),
+            )
         }
         3 | 4 => ("another number", swap(field.value.clone(), pick(&NUMBERS, random))),
         5 | 6 => ("another value", swap(field.value.clone(), pick(&VALUES, random))),
-        7 => ("the value of another field", swap(field.value.clone(), &text[other.value.clone()])),
+        7 => (
+            "the value of another field",
+            swap(field.value.clone(), &text[other.value.clone()]),
+        ),
         8 => ("a letter put in", swap(anywhere..anywhere, pick(&LETTERS, random))),
         9 => ("a piece cut out", cut(text, anywhere, random.random_range(1..9))),
         10 => ("the end cut off", text[..anywhere].to_owned()),
         11 => ("deep nesting", swap(field.value.clone(), &nested(random))),
-        12 => ("another struct name", text.replacen("Scenario(", pick(&["Scenaro(", "Scenario", "Scenario((", "[", "Some("], random), 1)),
-        13 => ("a field moved into another", swap(other.value.clone(), &format!("({own})"))),
-        14 => ("a long list", swap(field.value.clone(), &format!("At([{}])", "(0.5, -0.5), ".repeat(random.random_range(0..3000))))),
-        15 => ("a long word", swap(field.value.clone(), &"x".repeat(random.random_range(1..5000)))),
+        12 => (
+            "another struct name",
+            text.replacen(
+                "Scenario(",
+                pick(&["Scenaro(", "Scenario", "Scenario((", "[", "Some("], random),
+                1,
+            ),
+        ),
+        13 => (
+            "a field moved into another",
+            swap(other.value.clone(), &format!("({own})")),
+        ),
+        14 => (
+            "a long list",
+            swap(
+                field.value.clone(),
+                &format!("At([{}])", "(0.5, -0.5), ".repeat(random.random_range(0..3000))),
+            ),
+        ),
+        15 => (
+            "a long word",
+            swap(field.value.clone(), &"x".repeat(random.random_range(1..5000))),
+        ),
         16 => ("noise", noise(random)),
-        _ => ("two things at once", swap(field.value.clone(), pick(&NUMBERS, random)).replacen(':', pick(&LETTERS, random), 1)),
+        _ => (
+            "two things at once",
+            swap(field.value.clone(), pick(&NUMBERS, random)).replacen(':', pick(&LETTERS, random), 1),
+        ),
     };
     Mutant {
         label: label.into(),
@@ -117,13 +191,19 @@ fn typo(name: &str, random: &mut impl Rng) -> String {
 fn nested(random: &mut impl Rng) -> String {
     let depth = random.random_range(1..100_000);
     let (open, close) = [("(", ")"), ("[", "]"), ("Some(", ")"), ("(a:", ")"), ("/*", "*/")][random.random_range(0..5)];
-    let closed = if random.random() { close.repeat(depth) } else { String::new() };
+    let closed = if random.random() {
+        close.repeat(depth)
+    } else {
+        String::new()
+    };
     format!("{}1{closed}", open.repeat(depth))
 }
 
 fn noise(random: &mut impl Rng) -> String {
     let length = random.random_range(0..400);
-    (0..length).map(|_| char::from_u32(random.random_range(0..0x300)).unwrap_or('?')).collect()
+    (0..length)
+        .map(|_| char::from_u32(random.random_range(0..0x300)).unwrap_or('?'))
+        .collect()
 }
 
 /// The fields of a well-formed file.
@@ -131,7 +211,11 @@ fn fields(text: &str) -> Vec<Field> {
     let code = without_comments(text);
     let mut found = Vec::new();
     for (colon, _) in code.match_indices(": ") {
-        let name: String = code[..colon].chars().rev().take_while(|letter| letter.is_alphanumeric() || *letter == '_').collect();
+        let name: String = code[..colon]
+            .chars()
+            .rev()
+            .take_while(|letter| letter.is_alphanumeric() || *letter == '_')
+            .collect();
         let value = colon + 2;
         found.push(Field {
             start: colon - name.len(),
@@ -148,9 +232,8 @@ fn extent(text: &str) -> usize {
     for (at, letter) in text.char_indices() {
         match letter {
             '(' | '[' => depth += 1,
-            ')' | ']' if depth == 0 => return at,
+            ')' | ']' | ',' if depth == 0 => return at,
             ')' | ']' => depth -= 1,
-            ',' if depth == 0 => return at,
             _ => {}
         }
     }
@@ -160,7 +243,11 @@ fn extent(text: &str) -> usize {
 /// The text with its comments blanked, each byte in its place.
 fn without_comments(text: &str) -> String {
     let lines = text.split_inclusive('\n').map(|line| match line.find("//") {
-        Some(at) => format!("{}{}\n", &line[..at], " ".repeat(line.trim_end_matches('\n').len() - at)),
+        Some(at) => format!(
+            "{}{}\n",
+            &line[..at],
+            " ".repeat(line.trim_end_matches('\n').len() - at)
+        ),
         None => line.to_owned(),
     });
     lines.collect()
