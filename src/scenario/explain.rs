@@ -2,6 +2,7 @@
 
 use ron::error::{Error, Position, SpannedError};
 
+use super::lines::line_of;
 use super::path::{FieldPath, Step, field, follow, head, path_at};
 use super::shape::Shape;
 use super::token::Span;
@@ -272,9 +273,4 @@ fn bytes(text: &str, position: Position) -> usize {
     let rest = &text[line..];
     let column = rest.char_indices().nth(position.col - 1);
     column.map_or(text.len(), |(offset, _)| line + offset)
-}
-
-/// The line of a byte, from 1.
-fn line_of(text: &str, at: usize) -> usize {
-    1 + text[..at].matches('\n').count()
 }

@@ -12,6 +12,7 @@ mod file;
 #[cfg(test)]
 mod generated;
 mod limits;
+mod lines;
 mod overrides;
 mod path;
 mod read;
