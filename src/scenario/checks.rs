@@ -32,6 +32,11 @@ impl Problem {
         }
     }
 
+    /// Every field that it depends on, first the one best changed.
+    pub fn involved(&self) -> impl Iterator<Item = &FieldPath> {
+        std::iter::once(&self.path).chain(&self.also)
+    }
+
     fn with(mut self, also: &[&str]) -> Self {
         self.also = also.iter().map(|path| FieldPath::of(path)).collect();
         self
@@ -40,15 +45,15 @@ impl Problem {
 
 /// Everything wrong with `scenario`.
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
-    let mut found = Vec::new();
-    found.extend(name(scenario));
-    found.extend(counts(scenario));
+    let mut found = counts(scenario);
     found.extend(periods(scenario));
     if found.is_empty() {
-        // Sizes are computed from counts and periods that hold.
+        // Times and sizes are computed from counts and periods that hold.
         found.extend(times(scenario));
         found.extend(sizes(scenario));
     }
+    found.extend(name(scenario));
+    found.extend(places(scenario));
     found
 }
 
@@ -82,15 +87,19 @@ fn counts(scenario: &Scenario) -> Vec<Problem> {
     };
     count("trials", scenario.trials, limits::TRIALS);
     count("swarm.robots", scenario.swarm.robots, limits::ROBOTS);
-    if let DeployConfig::At(places) = &scenario.swarm.deploy {
-        let robots = scenario.swarm.robots;
-        if places.len() != robots as usize {
-            let message = format!("places: {}, robots: {robots}", places.len());
-            let help = "list one place for each robot, or change `swarm.robots`";
-            found.push(Problem::new("swarm.deploy", message, help).with(&["swarm.robots"]));
-        }
-    }
     found
+}
+
+fn places(scenario: &Scenario) -> Option<Problem> {
+    let DeployConfig::At(places) = &scenario.swarm.deploy else {
+        return None;
+    };
+    let robots = scenario.swarm.robots;
+    (places.len() != robots as usize).then(|| {
+        let message = format!("places: {}, robots: {robots}", places.len());
+        let help = "list one place for each robot, or change `swarm.robots`";
+        Problem::new("swarm.deploy", message, help).with(&["swarm.robots"])
+    })
 }
 
 fn periods(scenario: &Scenario) -> Vec<Problem> {
@@ -150,7 +159,7 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         let message =
             format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
         let help = "make `time_limit` longer, or `metrics.hold` shorter";
-        found.push(Problem::new("time_limit", message, help).with(&["metrics.hold"]));
+        found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
     }
     found
 }

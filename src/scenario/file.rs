@@ -74,6 +74,9 @@ pub fn question(text: &str) -> Option<String> {
 }
 
 /// The whole scenario as the text of a scenario file, defaults included. [`parse`] reads it back to an equal one.
+///
+/// # Panics
+/// Never: every value of a scenario has a form in RON.
 #[must_use]
 pub fn to_ron(scenario: &Scenario) -> String {
     let layout = PrettyConfig::new().compact_arrays(true);

@@ -38,7 +38,7 @@ impl<'s> Shape<'s> {
         match step {
             Step::Field(name) => self.field(name).or_else(|| {
                 // Of an enum whose variant the path leaves out: the first variant that has such a field.
-                let variants = self.choices().filter_map(|choice| choice.payload());
+                let variants = self.choices().filter_map(Self::payload);
                 variants.into_iter().find_map(|variant| variant.field(name))
             }),
             Step::Variant(name) => {
