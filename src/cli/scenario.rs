@@ -131,7 +131,8 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
         }
         None => simulate(&folder, &scenario, arguments)?,
     };
-    print(&Finished { question: question(&text), folder, summary, manifest }, arguments)
+    let control_period_s = scenario.control.period.get();
+    print(&Finished { question: question(&text), control_period_s, folder, summary, manifest }, arguments)
 }
 
 impl ScenarioArguments {
@@ -153,7 +154,11 @@ impl ScenarioArguments {
 /// The manifest of the results asked for, if they are there and finished. The folder is then ready for the others: it
 /// holds nothing, or finished trials of the same experiment.
 fn finished(folder: &Folder, scenario: &Scenario, force: bool) -> Result<Option<Manifest>, Failure> {
-    let Contents::Results(there) = folder.contents()? else { return Ok(None) };
+    let Contents::Results(there) = folder.contents()? else {
+        // Finished trials that nothing says the scenario of are of no use.
+        folder.drop_trials()?;
+        return Ok(None);
+    };
     if force {
         // Opening the trials makes sure that nobody is running them.
         drop(Parts::open(&folder.trials())?);
@@ -231,6 +236,7 @@ fn failure(error: ExperimentError<TrialError>) -> Failure {
 /// Finished results, to be shown.
 struct Finished {
     question: Option<String>,
+    control_period_s: f64,
     folder: Folder,
     summary: Summary,
     manifest: Manifest,
@@ -252,6 +258,7 @@ fn text(finished: &Finished) -> String {
     report::terminal(&report::Input {
         question: finished.question.as_deref(),
         summary: &finished.summary,
+        control_period_s: finished.control_period_s,
         speed: Speed {
             simulated_s: trials.iter().map(|trial| trial.simulated_s).sum(),
             delivered: trials.iter().map(|trial| trial.delivered).sum(),

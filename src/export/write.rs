@@ -59,7 +59,7 @@ pub fn write(
         records.push(TrialRecord { trajectories: Vec::new(), ..part.record });
     }
     tables.finish().map_err(failed("write", parts.dir()))?;
-    let summary = Summary::new(&scenario.name, names.topics, &records);
+    let summary = Summary::of(&scenario.name, names.topics, names.roles, &records);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());
     for name in files {
