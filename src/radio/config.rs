@@ -236,3 +236,87 @@ impl Default for SensingConfig {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problems(loss: LossConfig, latency: LatencyConfig) -> Vec<(String, String)> {
+        RadioConfig {
+            loss,
+            latency,
+            ..RadioConfig::default()
+        }
+        .problems()
+    }
+
+    fn gilbert_elliott(good_to_bad: f64, bad_to_good: f64, good_loss: f64, bad_loss: f64) -> LossConfig {
+        LossConfig::GilbertElliott {
+            good_to_bad: Probability::new(good_to_bad),
+            bad_to_good: Probability::new(bad_to_good),
+            good_loss: Probability::new(good_loss),
+            bad_loss: Probability::new(bad_loss),
+        }
+    }
+
+    fn uniform(min: f64, max: f64) -> LatencyConfig {
+        LatencyConfig::Uniform {
+            min: NonNegative::new(min),
+            max: NonNegative::new(max),
+        }
+    }
+
+    fn normal(mean: f64, min: f64) -> LatencyConfig {
+        LatencyConfig::Normal {
+            mean: NonNegative::new(mean),
+            std_dev: NonNegative::new(0.003),
+            min: NonNegative::new(min),
+        }
+    }
+
+    #[test]
+    fn every_problem_is_reported_at_its_field_with_its_remedy() {
+        for (loss, latency, expected) in [
+            (
+                gilbert_elliott(0.0, 0.0, 0.0, 1.0),
+                uniform(0.0, 0.1),
+                vec![("loss", "set one of them above 0")],
+            ),
+            (
+                gilbert_elliott(0.1, 0.2, 0.9, 0.1),
+                uniform(0.0, 0.1),
+                vec![("loss", "exchange them")],
+            ),
+            (
+                LossConfig::None,
+                uniform(0.2, 0.1),
+                vec![("latency", "min 0.2 above max 0.1; exchange them")],
+            ),
+            (
+                LossConfig::None,
+                normal(0.01, 0.02),
+                vec![("latency", "lower min to at most the mean")],
+            ),
+            (
+                gilbert_elliott(0.0, 0.0, 0.0, 1.0),
+                normal(0.01, 0.02),
+                vec![("loss", "never changes state"), ("latency", "min 0.02 above mean 0.01")],
+            ),
+        ] {
+            let found = problems(loss, latency);
+            assert_eq!(found.len(), expected.len());
+            for ((field, message), (expected_field, part)) in found.iter().zip(expected) {
+                assert_eq!(field, expected_field);
+                assert!(message.contains(part), "{message}");
+            }
+        }
+    }
+
+    #[test]
+    fn limits_that_meet_are_no_problem() {
+        for latency in [uniform(0.1, 0.1), normal(0.01, 0.01)] {
+            assert_eq!(problems(gilbert_elliott(0.0, 1.0, 0.5, 0.5), latency), []);
+        }
+        assert_eq!(RadioConfig::default().problems(), []);
+    }
+}

@@ -47,7 +47,7 @@ struct Link {
 impl GilbertElliott {
     /// Chains with transition probabilities good → bad and bad → good, not both 0, and with the loss probabilities of
     /// a good and a bad link, among `robots` robots.
-    pub fn new([good_to_bad, bad_to_good]: [f64; 2], losses: [f64; 2], streams: &Streams, robots: usize) -> Self {
+    pub fn new([good_to_bad, bad_to_good]: [f64; 2], losses: [f64; 2], streams: Streams, robots: usize) -> Self {
         let persistence = 1.0 - good_to_bad - bad_to_good;
         Self {
             bad_share: good_to_bad / (good_to_bad + bad_to_good),
@@ -115,4 +115,78 @@ fn power(base: f64, exponent: u32) -> f64 {
         left >>= 1;
     }
     result
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn copy(receiver: u32, sequence: u32) -> FrameCopy {
+        FrameCopy {
+            sender: ActorId(0),
+            receiver: ActorId(receiver),
+            sequence,
+        }
+    }
+
+    fn chains(good_to_bad: f64, bad_to_good: f64) -> GilbertElliott {
+        GilbertElliott::new([good_to_bad, bad_to_good], [0.0, 1.0], Streams::new(7, 0), 1)
+    }
+
+    #[test]
+    fn a_power_is_the_product_of_its_factors() {
+        for base in [0.75, -0.4, 0.0, 1.0, -1.0] {
+            for exponent in [0, 1, 2, 3, 10, 31] {
+                let product: f64 = (0..exponent).map(|_| base).product();
+                assert!((power(base, exponent) - product).abs() < 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn memory_lasts_for_as_long_as_a_draw_can_tell_the_difference() {
+        let links = chains(0.05, 0.2);
+        assert!(power(0.75, links.memory) < RESOLUTION && power(0.75, links.memory - 1) >= RESOLUTION);
+        assert_eq!(
+            chains(0.4, 0.6).memory,
+            0,
+            "a chain without correlation has nothing to remember"
+        );
+        assert_eq!(chains(1.0, 1.0).memory, u32::MAX, "an alternating chain never forgets");
+    }
+
+    #[test]
+    fn the_row_of_a_robot_that_meets_many_in_turn_stays_short() {
+        let mut links = chains(0.05, 0.2);
+        for frame in 0..100_000 {
+            links.step(copy(frame / 10, frame));
+        }
+        let met_within_memory = links.memory as usize / 10 + 1;
+        assert!(links.rows[0].capacity() <= 2 * met_within_memory.next_power_of_two());
+    }
+
+    proptest! {
+        #[test]
+        fn rows_that_forget_give_the_states_of_a_table_that_never_does(
+            hearings in prop::collection::vec((0_u32..40, 0_u32..60), 1..400),
+            good_to_bad in 0.05..1.0_f64, bad_to_good in 0.05..1.0_f64,
+        ) {
+            let mut links = chains(good_to_bad, bad_to_good);
+            let mut table: BTreeMap<ActorId, Link> = BTreeMap::new();
+            let mut sequence = 0;
+            for (receiver, silence) in hearings {
+                sequence += silence + 1;
+                let copy = copy(receiver, sequence);
+                let probability = links.bad_probability(table.get(&copy.receiver).copied(), sequence);
+                let bad = copy.happens(probability, links.draws);
+                table.insert(copy.receiver, Link { receiver: copy.receiver, sequence, bad });
+                prop_assert_eq!(links.step(copy), bad);
+                prop_assert!(links.rows[0].is_sorted_by_key(|link| link.receiver));
+            }
+        }
+    }
 }

@@ -35,7 +35,7 @@ enum Law {
 
 impl Latency {
     /// The model that `config` describes.
-    pub fn new(config: &LatencyConfig, streams: &Streams) -> Self {
+    pub fn new(config: &LatencyConfig, streams: Streams) -> Self {
         Self {
             model: Model::new(config),
             draws: streams.keyed(LATENCY),

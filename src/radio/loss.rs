@@ -30,7 +30,7 @@ enum Model {
 
 impl Loss {
     /// The model that `config` describes, for `robots` robots with a communication range of `range` metres.
-    pub fn new(config: &LossConfig, range: f64, streams: &Streams, robots: usize) -> Self {
+    pub fn new(config: &LossConfig, range: f64, streams: Streams, robots: usize) -> Self {
         let model = match *config {
             LossConfig::None => Model::Bernoulli(0.0),
             LossConfig::Bernoulli(probability) => Model::Bernoulli(probability.get()),

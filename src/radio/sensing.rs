@@ -22,7 +22,7 @@ pub(super) struct Sensing {
 
 impl Sensing {
     /// The sensor that `config` describes.
-    pub fn new(config: &SensingConfig, streams: &Streams) -> Self {
+    pub fn new(config: &SensingConfig, streams: Streams) -> Self {
         Self {
             range_noise: config.range_noise.get(),
             bearing_noise: config.bearing_noise.get().to_radians(),

@@ -81,7 +81,7 @@ fn counts(scenario: &Scenario) -> Vec<Problem> {
     if let DeployConfig::At(places) = &scenario.swarm.deploy {
         let robots = scenario.swarm.robots;
         if places.len() != robots as usize {
-            let message = format!("{} places for {robots} robots", places.len());
+            let message = format!("places: {}, robots: {robots}", places.len());
             let help = "list one place for each robot, or change `swarm.robots`";
             found.push(Problem::new("swarm.deploy", message, help).with(&["swarm.robots"]));
         }

@@ -7,6 +7,9 @@ use super::shape::Shape;
 use super::token::Span;
 use super::tree::Node;
 
+/// Longest expectation that a message still holds, bytes; a longer one goes into the help.
+const SHORT: usize = 60;
+
 /// What is wrong, before it is placed in a file.
 #[derive(Debug)]
 pub struct Finding {
@@ -51,8 +54,13 @@ impl Reader<'_> {
     fn unknown_field(&self, found: &str, known: &[&str]) -> Finding {
         let path = path_at(self.root, self.span.start, self.text);
         let owner = owner(&path.parent());
+        // A field of another part is a likelier guess than one that is merely spelt alike.
+        let guess = match Shape::scenario().find(found) {
+            Some(elsewhere) => format!(", did you mean `{elsewhere}`?"),
+            None => nearest(found, known),
+        };
         Finding {
-            message: format!("unknown field `{found}` in {owner}{}", nearest(found, known)),
+            message: format!("unknown field `{found}` in {owner}{guess}"),
             help: Some(format!("known fields: {}", known.join(", "))),
             path,
             span: self.span.clone(),
@@ -144,13 +152,23 @@ impl Reader<'_> {
         }
         let node = follow(self.root, &path, self.text).node;
         let found = excerpt(node, self.text);
-        let message = match expected(&path, node) {
-            Some(expected) if is_mismatch(error) => format!("`{path}` is `{found}`: expected {expected}"),
-            _ => format!("`{path}` is `{found}`: {error}"),
+        let (message, help) = match expected(&path, node) {
+            _ if has_doubled_brackets(node) => (
+                format!("`{path}` has two pairs of round brackets"),
+                Some("write one pair after the name".into()),
+            ),
+            Some(expected) if is_mismatch(error) && expected.len() <= SHORT => (
+                format!("`{path}` cannot be `{found}`: expected {expected}"),
+                meaning(&path),
+            ),
+            Some(expected) if is_mismatch(error) => {
+                (format!("`{path}` cannot be `{found}`"), Some(format!("expected {expected}")))
+            }
+            _ => (format!("`{path}` cannot be `{found}`: {error}"), meaning(&path)),
         };
         Finding {
             message,
-            help: inner_brackets(node).or_else(|| meaning(&path)),
+            help,
             span: if node.group.is_none() { node.span.clone() } else { head(node) },
             path,
             label: "here".into(),
@@ -180,13 +198,13 @@ fn expected(path: &FieldPath, node: &Node) -> Option<String> {
     }
 }
 
-fn inner_brackets(node: &Node) -> Option<String> {
-    let group = node.group.as_ref()?;
-    let [only] = group.items.as_slice() else {
-        return None;
-    };
-    let doubled = node.name.is_some() && only.key.is_none() && only.value.name.is_none() && only.value.group.is_some();
-    doubled.then(|| "write one pair of round brackets after the name, not two".into())
+/// `Name((...))`.
+fn has_doubled_brackets(node: &Node) -> bool {
+    let items = node.group.as_ref().map_or(&[][..], |group| &group.items);
+    match items {
+        [only] => node.name.is_some() && only.key.is_none() && only.value.is_bare_struct(),
+        _ => false,
+    }
 }
 
 fn meaning(path: &FieldPath) -> Option<String> {

@@ -151,7 +151,7 @@ impl Edit<'_> {
                 Ok(())
             }
             Step::Field(name) if contents(place.node).is_some() => {
-                let added = self.added(name, place.steps, resolved);
+                let added = self.added(name, place.steps, resolved)?;
                 insert(place.node, source, added);
                 Ok(())
             }
@@ -178,30 +178,29 @@ impl Edit<'_> {
     }
 
     /// `name: value` for a field that the file leaves out: within its defaults if they are known and have it.
-    fn added(&self, name: &str, step: usize, resolved: Option<&str>) -> Vec<Piece> {
-        let within = resolved.and_then(|resolved| self.within_defaults(step, resolved));
-        let value = within.unwrap_or_else(|| self.nested(step + 1));
+    fn added(&self, name: &str, step: usize, resolved: Option<&str>) -> Result<Vec<Piece>, Misfit> {
+        let within = match resolved {
+            Some(resolved) if step + 1 < self.given.path.0.len() => self.within_defaults(step, resolved)?,
+            _ => None,
+        };
         let mut pieces = vec![self.around(step, &format!("{name}: "))];
-        pieces.extend(value);
-        pieces
+        pieces.extend(within.unwrap_or_else(|| self.nested(step + 1)));
+        Ok(pieces)
     }
 
-    fn within_defaults(&self, step: usize, resolved: &str) -> Option<Vec<Piece>> {
-        let path = &self.given.path;
-        if step + 1 == path.0.len() {
-            return None;
+    /// The field of this step as the resolved scenario has it, with the value worked in.
+    fn within_defaults(&self, step: usize, resolved: &str) -> Result<Option<Vec<Piece>>, Misfit> {
+        let field = FieldPath(self.given.path.0[..=step].to_vec());
+        let mut defaults = Source::of(self.around(step, resolved));
+        let Some(root) = tree::read(resolved).0 else {
+            return Ok(None);
+        };
+        if follow(&root, &field, resolved).steps <= step {
+            return Ok(None);
         }
-        let (root, _) = tree::read(resolved);
-        let root = root?;
-        let outer = follow(&root, &FieldPath(path.0[..=step].to_vec()), resolved);
-        let inner = follow(outer.node, &FieldPath(path.0[step + 1..].to_vec()), resolved);
-        let named = matches!(path.0.last(), Some(Step::Variant(_)));
-        if outer.steps != step + 1 || inner.steps != path.0.len() - step - 1 || named {
-            return None;
-        }
-        let before = &resolved[outer.node.span.start..inner.node.span.start];
-        let after = &resolved[inner.node.span.end..outer.node.span.end];
-        Some(vec![self.around(step, before), self.value(), self.around(step, after)])
+        self.place(&root, resolved, &mut defaults, None)?;
+        let root = tree::read(defaults.text()).0;
+        Ok(root.map(|root| defaults.cut(follow(&root, &field, defaults.text()).node.span.clone())))
     }
 
     /// The value inside what the steps from `from` on lead through.

@@ -8,9 +8,9 @@ use ron::extensions::Extensions;
 use serde::Deserialize;
 
 use super::checks::{Problem, problems};
-use super::explain::{Finding, explain};
+use super::explain::{Finding, explain, nearest};
 use super::overrides::Override;
-use super::path::{FieldPath, field_at, follow, head, path_at};
+use super::path::{FieldPath, Step, field_at, follow, head, path_at};
 use super::report::{Diagnostic, Place, Report};
 use super::source::{Source, blank};
 use super::token::Span;
@@ -122,7 +122,7 @@ impl Reader<'_> {
             field_at(&root, finding.span.start)
         };
         let path = field.map(|field| path_at(&root, field.start(), text));
-        let caused = missing && blanked.iter().any(|path| path.plain() == finding.path.plain());
+        let caused = missing && blanked.iter().any(|path| stands_for(path, &finding.path));
         if !caused {
             self.add(finding);
         }
@@ -202,6 +202,17 @@ impl Reader<'_> {
         Report {
             diagnostics: self.diagnostics,
         }
+    }
+}
+
+/// Whether `blanked` is the field `missing`, or a misspelt name of it.
+fn stands_for(blanked: &FieldPath, missing: &FieldPath) -> bool {
+    let (blanked, missing) = (blanked.plain(), missing.plain());
+    match (blanked.0.last(), missing.0.last()) {
+        (Some(Step::Field(found)), Some(Step::Field(known))) if blanked.parent() == missing.parent() => {
+            found == known || !nearest(found, &[known]).is_empty()
+        }
+        _ => false,
     }
 }
 

@@ -103,6 +103,26 @@ impl<'s> Shape<'s> {
         required
     }
 
+    /// Where in it a field called `name` is, variants included.
+    pub fn find(self, name: &str) -> Option<FieldPath> {
+        let mut found = Vec::new();
+        self.search(name, &FieldPath::default(), &mut found);
+        found.into_iter().min_by_key(|path| path.0.len())
+    }
+
+    fn search(self, name: &str, path: &FieldPath, found: &mut Vec<FieldPath>) {
+        let fields = self.fields().into_iter().map(|field| (Step::Field(field.into()), field == name));
+        let variants = self.choices().filter_map(Self::name).map(|name| (Step::Variant(name.into()), false));
+        for (step, same) in fields.chain(variants) {
+            let next = path.join(step.clone());
+            if same {
+                found.push(next);
+            } else if let Some(inner) = self.step(&step) {
+                inner.search(name, &next, found);
+            }
+        }
+    }
+
     fn requires(self, field: &str) -> bool {
         let required = self.here.get("required").and_then(Value::as_array);
         required.is_some_and(|required| required.iter().any(|name| name == field))
@@ -170,7 +190,8 @@ impl<'s> Shape<'s> {
     fn largest_integer(self) -> Option<f64> {
         let format = self.here.get("format").and_then(Value::as_str)?;
         let bits: i32 = format.strip_prefix("uint")?.parse().ok()?;
-        Some(2_f64.powi(bits) - 1.0)
+        // Nobody counts that far in 64 bits.
+        (bits < 64).then(|| 2_f64.powi(bits) - 1.0)
     }
 }
 

@@ -51,12 +51,17 @@ pub struct Source {
 impl Source {
     /// A file without overrides.
     pub fn new(file: &str) -> Self {
-        Self {
+        Self::of(Piece {
             text: file.into(),
-            pieces: vec![Piece {
-                text: file.into(),
-                origin: Origin::File(0),
-            }],
+            origin: Origin::File(0),
+        })
+    }
+
+    /// Text of one piece.
+    pub fn of(piece: Piece) -> Self {
+        Self {
+            text: piece.text.clone(),
+            pieces: vec![piece],
         }
     }
 

@@ -20,6 +20,8 @@ pub struct Node {
 /// What stands between two brackets.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Group {
+    /// Where the opening bracket stands.
+    pub opening: Span,
     /// From after the opening bracket to before the closing one.
     pub inside: Span,
     /// The values in order.
@@ -39,6 +41,13 @@ pub struct Item {
     pub comma: bool,
 }
 
+impl Node {
+    /// Whether it is `( ... )` without a name.
+    pub fn is_bare_struct(&self) -> bool {
+        self.name.is_none() && self.group.is_some()
+    }
+}
+
 impl Item {
     /// Where it begins.
     pub fn start(&self) -> usize {
@@ -56,10 +65,15 @@ pub fn read(text: &str) -> (Option<Node>, Vec<Fault>) {
         open: Vec::new(),
         faults,
     };
+    let broken = reader.faults.len();
     let node = reader.value();
     if node.is_some() && reader.faults.is_empty() && reader.peek().is_some() {
         let span = reader.here();
-        reader.fault(span, "text after the end of the scenario".into(), "remove it");
+        reader.fault(span, "text after the end".into(), "remove it");
+    }
+    if broken > 0 {
+        // What a comment or a string that never ends has swallowed is not missing.
+        reader.faults.truncate(broken);
     }
     (node, reader.faults)
 }
@@ -138,6 +152,7 @@ impl Reader<'_> {
         let opening = self.take();
         let start = name.as_ref().map_or(opening.start, |name| name.start);
         let mut group = Group {
+            opening: opening.clone(),
             inside: opening.end..self.text.len(),
             items: Vec::new(),
         };
@@ -166,8 +181,7 @@ impl Reader<'_> {
             match self.peek() {
                 None => {
                     if self.faults.is_empty() {
-                        let message = format!("`{bracket}` is never closed");
-                        self.fault(opening.clone(), message, &format!("close it with `{}`", closing(bracket)));
+                        self.unclosed(opening, bracket, group);
                     }
                     return;
                 }
@@ -192,8 +206,46 @@ impl Reader<'_> {
         }
     }
 
+    /// The bracket to name is often one further in, which took a later bracket for its own: then a line within it begins
+    /// no further in than the line that it opens on.
+    fn unclosed(&mut self, opening: &Span, bracket: char, group: &Group) {
+        let help = format!("close it with `{}`", closing(bracket));
+        match self.swallows(group) {
+            Some((opening, swallowed)) => {
+                let line = self.line(swallowed);
+                let message = format!("`{}` is not closed before line {line}", &self.text[opening.clone()]);
+                self.fault(opening, message, &help);
+            }
+            None => self.fault(opening.clone(), format!("`{bracket}` is never closed"), &help),
+        }
+    }
+
+    /// The innermost bracket that has a line within it which by its indentation belongs outside, and where that is.
+    fn swallows(&self, group: &Group) -> Option<(Span, usize)> {
+        let inner = group.items.iter().filter_map(|item| item.value.group.as_ref());
+        inner.filter_map(|inner| self.swallows(inner)).next().or_else(|| {
+            let depth = self.indentation(group.opening.start);
+            let mut starts = group.items.iter().map(Item::start);
+            let outside = starts.find(|start| {
+                let line = self.text[..*start].rfind('\n').map_or(0, |newline| newline + 1);
+                line > group.opening.start && self.text[line..*start].trim().is_empty() && *start - line <= depth
+            });
+            outside.map(|start| (group.opening.clone(), start))
+        })
+    }
+
+    /// How far in the line of a byte begins.
+    fn indentation(&self, at: usize) -> usize {
+        let line = self.text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+        self.text[line..].len() - self.text[line..].trim_start().len()
+    }
+
+    fn line(&self, at: usize) -> usize {
+        1 + self.text[..at].matches('\n').count()
+    }
+
     fn wrong_close(&mut self, opening: &Span, bracket: char, found: char) {
-        let line = 1 + self.text[..opening.start].matches('\n').count();
+        let line = self.line(opening.start);
         let message = format!("`{found}` does not close the `{bracket}` of line {line}");
         let span = self.here();
         self.fault(span, message, &format!("close it with `{}`", closing(bracket)));
@@ -321,6 +373,12 @@ mod tests {
     fn an_open_bracket_is_named_where_it_opens() {
         assert_eq!(faults("(a: [1, 2)"), [(9, "`)` does not close the `[` of line 1".into())]);
         assert_eq!(faults("S(a: 1"), [(1, "`(` is never closed".into())]);
+    }
+
+    #[test]
+    fn a_bracket_that_took_the_closing_one_of_another_is_found_by_indentation() {
+        let text = "S(\n    a: X(b: (1, 2),\n    c: 3,\n)\n";
+        assert_eq!(faults(text), [(11, "`(` is not closed before line 3".into())]);
     }
 
     #[test]

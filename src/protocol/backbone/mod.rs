@@ -1,5 +1,365 @@
-//! The failure-tolerant connectivity backbone (paper section 4).
+//! The failure-tolerant connectivity backbone (paper section 4): robots build chains of relays from a root to workers
+//! that visit targets, as many chains to a target as it needs.
 
+mod codec;
 mod config;
+mod forces;
+mod free;
+mod message;
+mod mission;
+mod neighbours;
+mod networker;
+mod recruit;
+mod root;
+mod sidestep;
+mod strand;
+mod view;
+mod worker;
 
-pub use config::{BackboneConfig, TargetConfig, TargetsConfig};
+use std::rc::Rc;
+
+pub use codec::BackboneCodec;
+pub use config::{BackboneConfig, ControlLawConfig, RecruitingConfig, ShortageConfig, TargetConfig, TargetsConfig};
+pub use message::{Message, Order, Request, Role, Status, Strand};
+
+use mission::{Mission, Parameters};
+use neighbours::Neighbours;
+use networker::Networker;
+use recruit::Recruiter;
+use root::Root;
+use sidestep::Sidestep;
+use view::{Knowledge, View};
+use worker::Worker;
+
+use super::detector::DetectorConfig;
+use super::gossip::GossipConfig;
+use super::{Input, Note, Output, Protocol, Reception, Topic, Wake};
+use crate::engine::{ActorId, SimTime, Span};
+use crate::geometry::{Pose, Vec2};
+
+/// Orders are repeated this many request intervals apart.
+const ORDER_REPETITION: u64 = 10;
+
+/// One robot of the backbone.
+#[derive(Debug)]
+pub struct Backbone {
+    known: Knowledge,
+    duty: Duty,
+    /// The role before the present one.
+    previous: Role,
+    recruiter: Recruiter,
+    sidestep: Sidestep,
+    told: Told,
+}
+
+/// What a robot does, with the state that this needs.
+#[derive(Debug)]
+enum Duty {
+    Free,
+    Root(Root),
+    Networker(Networker),
+    Worker(Worker),
+}
+
+/// What the metrics were last told.
+#[derive(Debug, Default)]
+struct Told {
+    role: Role,
+    target: Option<u16>,
+    parents: Vec<ActorId>,
+}
+
+/// The robots of a scenario, in order of their ids, for robots that start at `poses`. The robot nearest to the centre is
+/// the root; the robot nearest to each target is its worker; all others are free.
+///
+/// # Panics
+/// If there are fewer robots than a root and a worker for each target, which [`BackboneConfig::problems`] reports.
+#[must_use]
+pub fn swarm(
+    config: &BackboneConfig,
+    gossip: &GossipConfig,
+    detector: &DetectorConfig,
+    control_period: Span,
+    poses: &[Pose],
+) -> Vec<Backbone> {
+    let parameters = Parameters::new(config, gossip, detector, control_period);
+    let mission = Rc::new(Mission::new(config, parameters, poses));
+    (0..poses.len() as u32)
+        .map(|robot| Backbone::new(ActorId(robot), Rc::clone(&mission)))
+        .collect()
+}
+
+impl Backbone {
+    fn new(id: ActorId, mission: Rc<Mission>) -> Self {
+        let duty = if id == mission.root {
+            Duty::Root(Root::new(&mission))
+        } else if let Some(target) = mission.worker_target(id) {
+            Duty::Worker(Worker::new(target, &mission))
+        } else {
+            Duty::Free
+        };
+        Self {
+            known: Knowledge {
+                id,
+                mission,
+                step: 0,
+                position: Vec2::zeros(),
+                neighbours: Neighbours::default(),
+                order: Order::default(),
+            },
+            duty,
+            previous: Role::Free,
+            recruiter: Recruiter::default(),
+            sidestep: Sidestep::default(),
+            told: Told::default(),
+        }
+    }
+
+    fn hear(&mut self, reception: &Reception<Message>, out: &mut Vec<Message>) {
+        let frame = &reception.frame;
+        match &frame.message {
+            Message::Status(status) => {
+                let position = self.known.position + reception.displacement();
+                self.known
+                    .neighbours
+                    .hear(frame.sender, frame.sequence, reception.at, position, *status);
+            }
+            Message::ParentStrand(strand) => self.hear_parent_strand(frame.sender, strand, out),
+            Message::ChildStrand(strand) => match &mut self.duty {
+                Duty::Networker(networker) => {
+                    networker.hear_child_strand(frame.sender, strand, self.known.id, self.known.step);
+                }
+                Duty::Root(root) => root.hear_child_strand(strand, self.known.id),
+                Duty::Free | Duty::Worker(_) => {}
+            },
+            Message::Request(request) => self.hear_request(frame.sender, *request, out),
+        }
+    }
+
+    /// A robot that names this one as its child and is not counted on as a parent is let go.
+    fn hear_parent_strand(&mut self, sender: ActorId, strand: &Strand, out: &mut Vec<Message>) {
+        let (me, step) = (self.known.id, self.known.step);
+        let known = match &mut self.duty {
+            Duty::Networker(networker) => networker.slot.hear_parent_strand(sender, strand, me, step),
+            Duty::Worker(worker) => worker.slots.iter_mut().fold(false, |known, slot| {
+                slot.hear_parent_strand(sender, strand, me, step) || known
+            }),
+            Duty::Free | Duty::Root(_) => false,
+        };
+        if !known && strand.next == me && sender != me {
+            out.push(Message::Request(Request::Release { to: sender }));
+        }
+    }
+
+    fn hear_request(&mut self, sender: ActorId, request: Request, out: &mut Vec<Message>) {
+        match request {
+            Request::Join { to, sequence, chain } if to == self.known.id => {
+                out.push(Message::Request(self.answer(sender, sequence, chain)));
+            }
+            Request::Accept { to, sequence } if to == self.known.id => {
+                let (slots, step) = (self.duty.slots_mut(), self.known.step);
+                let known = slots.iter_mut().any(|slot| slot.hear_accept(sender, sequence, step));
+                if !known {
+                    out.push(Message::Request(Request::Release { to: sender }));
+                }
+            }
+            Request::Refuse { to, sequence } if to == self.known.id => {
+                for slot in self.duty.slots_mut() {
+                    slot.hear_refuse(sender, sequence);
+                }
+            }
+            Request::Release { to } if to == self.known.id => {
+                if matches!(&self.duty, Duty::Networker(networker) if networker.is_released_by(sender)) {
+                    self.become_free();
+                }
+            }
+            Request::Order(order) if order.is_newer_than(self.known.order) => self.known.order = order,
+            _ => {}
+        }
+    }
+
+    /// The answer to a request to join: a free robot accepts the first one.
+    fn answer(&mut self, sender: ActorId, sequence: u8, chain: u8) -> Request {
+        match &mut self.duty {
+            Duty::Networker(networker) => networker.hear_join(sender, sequence, chain, self.known.step),
+            Duty::Free if self.known.mission.has_chain(chain) => {
+                let joiner = Networker::new(chain, sender, sequence, self.known.mission.root, self.known.step);
+                self.duty = Duty::Networker(joiner);
+                self.previous = Role::Free;
+                Request::Accept { to: sender, sequence }
+            }
+            Duty::Free | Duty::Root(_) | Duty::Worker(_) => Request::Refuse { to: sender, sequence },
+        }
+    }
+
+    fn become_free(&mut self) {
+        self.previous = self.duty.role();
+        self.duty = Duty::Free;
+    }
+
+    fn control(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
+        self.known
+            .neighbours
+            .forget_before(now - self.known.mission.parameters.silence);
+        if matches!(&self.duty, Duty::Networker(networker) if networker.is_done(&self.known.view(&input.proximity))) {
+            self.become_free();
+        }
+        let desired = self.act(&input.proximity, &mut output.broadcasts);
+        let parameters = &self.known.mission.parameters;
+        let desired = forces::settle(desired, parameters.rest_speed);
+        let velocity = if self.may_step_aside() {
+            let stall = parameters.stall_steps;
+            self.sidestep
+                .adjust(desired, self.known.position, self.known.step, stall, &mut input.random)
+        } else {
+            desired
+        };
+        output.velocity = Some(velocity);
+        self.gossip(&input.proximity, &mut output.broadcasts);
+    }
+
+    /// Runs the routine of the robot's role; the velocity that it wants.
+    fn act(&mut self, proximity: &[Vec2], out: &mut Vec<Message>) -> Vec2 {
+        let view = self.known.view(proximity);
+        match &mut self.duty {
+            Duty::Free => free::velocity(&view),
+            Duty::Root(root) => {
+                self.known.order = root.control(&view);
+                Vec2::zeros()
+            }
+            Duty::Networker(networker) => networker.control(&view, &mut self.recruiter, out),
+            Duty::Worker(worker) => worker.control(&view, &mut self.recruiter, out),
+        }
+    }
+
+    /// Robots that hold a link in place stand still of their own will; all others may be stuck.
+    fn may_step_aside(&self) -> bool {
+        match &self.duty {
+            Duty::Free => true,
+            Duty::Networker(networker) => !networker.is_linked(),
+            Duty::Root(_) | Duty::Worker(_) => false,
+        }
+    }
+
+    fn gossip(&self, proximity: &[Vec2], out: &mut Vec<Message>) {
+        let parameters = &self.known.mission.parameters;
+        let view = self.known.view(proximity);
+        let turn = view.turn();
+        if turn.is_multiple_of(parameters.status_every) {
+            out.push(Message::Status(self.status(&view)));
+        }
+        if turn.is_multiple_of(parameters.strand_every) {
+            match &self.duty {
+                Duty::Free => {}
+                Duty::Root(_) => Root::strands(self.known.id, out),
+                Duty::Networker(networker) => networker.strands(self.known.id, out),
+                Duty::Worker(worker) => worker.strands(self.known.id, out),
+            }
+        }
+        let ordered = self.known.order.epoch != 0 && !matches!(self.duty, Duty::Free);
+        if ordered && turn.is_multiple_of(parameters.request_every * ORDER_REPETITION) {
+            out.push(Message::Request(Request::Order(self.known.order)));
+        }
+    }
+
+    fn status(&self, view: &View<'_>) -> Status {
+        let (need, chain) = match &self.duty {
+            Duty::Free | Duty::Root(_) => (false, 0),
+            Duty::Networker(networker) => (networker.need(view), networker.slot.chain),
+            Duty::Worker(worker) => (worker.need(view), worker.first_chain()),
+        };
+        Status {
+            role: self.duty.role(),
+            previous: self.previous,
+            need,
+            chain,
+        }
+    }
+
+    /// Tells the metrics what has changed.
+    fn report(&mut self, notes: &mut Vec<Note>) {
+        let role = self.duty.role();
+        if role != self.told.role {
+            self.told.role = role;
+            notes.push(Note::Role(role.index()));
+        }
+        let target = self.duty.target(&self.known.mission);
+        if target != self.told.target {
+            self.told.target = target;
+            notes.push(Note::Target(target));
+        }
+        let slots = self.duty.slots();
+        if !slots
+            .iter()
+            .map(|slot| slot.parent)
+            .eq(self.told.parents.iter().copied())
+        {
+            self.told.parents.clear();
+            self.told.parents.extend(slots.iter().map(|slot| slot.parent));
+            notes.push(Note::Parents(self.told.parents.clone()));
+        }
+    }
+}
+
+impl Duty {
+    const fn role(&self) -> Role {
+        match self {
+            Self::Free => Role::Free,
+            Self::Root(_) => Role::Root,
+            Self::Networker(_) => Role::Networker,
+            Self::Worker(_) => Role::Worker,
+        }
+    }
+
+    fn slots(&self) -> &[recruit::Slot] {
+        match self {
+            Self::Free | Self::Root(_) => &[],
+            Self::Networker(networker) => std::slice::from_ref(&networker.slot),
+            Self::Worker(worker) => &worker.slots,
+        }
+    }
+
+    fn slots_mut(&mut self) -> &mut [recruit::Slot] {
+        match self {
+            Self::Free | Self::Root(_) => &mut [],
+            Self::Networker(networker) => std::slice::from_mut(&mut networker.slot),
+            Self::Worker(worker) => &mut worker.slots,
+        }
+    }
+
+    fn target(&self, mission: &Mission) -> Option<u16> {
+        match self {
+            Self::Free | Self::Root(_) => None,
+            Self::Networker(networker) => Some(mission.chain(networker.slot.chain).target.into()),
+            Self::Worker(worker) => Some(worker.target.into()),
+        }
+    }
+}
+
+impl Protocol for Backbone {
+    type Message = Message;
+    type Codec = BackboneCodec;
+    const TOPICS: &'static [&'static str] = &["status", "request", "parent strand", "child strand"];
+    const ROLES: &'static [&'static str] = &["free", "root", "networker", "worker"];
+
+    fn topic(message: &Message) -> Topic {
+        Topic(match message {
+            Message::Status(_) => 0,
+            Message::Request(_) => 1,
+            Message::ParentStrand(_) => 2,
+            Message::ChildStrand(_) => 3,
+        })
+    }
+
+    fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
+        self.known.position = input.pose.position;
+        for reception in &input.inbox {
+            self.hear(reception, &mut output.broadcasts);
+        }
+        if input.wake == Wake::ControlStep {
+            self.control(now, input, output);
+            self.known.step += 1;
+        }
+        self.report(&mut output.notes);
+    }
+}

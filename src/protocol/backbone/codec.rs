@@ -1,0 +1,321 @@
+//! Messages as payload bytes.
+//!
+//! | message | bytes |
+//! |---|---|
+//! | status | role, previous role, parent need, target chain |
+//! | join | kind, to, sequence, chain |
+//! | accept, refuse | kind, to, sequence |
+//! | release | kind, to |
+//! | order | kind, epoch, target + 1 or 0 for all |
+//! | strand | kind, chain, next, number of robots, robots |
+//!
+//! The first byte tells messages apart: 0 to 3 is a status, which begins with its role. A robot's id is one byte if all
+//! ids in the message are below 256, else two, big-endian, and then the kind's top bit is set.
+
+use bytes::{Buf, BufMut, BytesMut};
+use tokio_util::codec::{Decoder, Encoder};
+
+use crate::engine::ActorId;
+use crate::protocol::CodecError;
+
+use super::message::{Message, Order, Request, Role, Status, Strand};
+
+const JOIN: u8 = 0x10;
+const ACCEPT: u8 = 0x11;
+const REFUSE: u8 = 0x12;
+const RELEASE: u8 = 0x13;
+const ORDER: u8 = 0x14;
+const PARENT_STRAND: u8 = 0x20;
+const CHILD_STRAND: u8 = 0x21;
+const WIDE_IDS: u8 = 0x80;
+
+/// The codec of [`Message`].
+#[derive(Debug, Default)]
+pub struct BackboneCodec;
+
+impl Encoder<Message> for BackboneCodec {
+    type Error = CodecError;
+
+    fn encode(&mut self, message: Message, bytes: &mut BytesMut) -> Result<(), CodecError> {
+        match message {
+            Message::Status(status) => put_status(status, bytes),
+            Message::Request(request) => put_request(request, bytes),
+            Message::ParentStrand(strand) => put_strand(PARENT_STRAND, &strand, bytes),
+            Message::ChildStrand(strand) => put_strand(CHILD_STRAND, &strand, bytes),
+        }
+        Ok(())
+    }
+}
+
+fn put_status(status: Status, bytes: &mut BytesMut) {
+    bytes.put_slice(&[
+        status.role as u8,
+        status.previous as u8,
+        u8::from(status.need),
+        status.chain,
+    ]);
+}
+
+fn put_request(request: Request, bytes: &mut BytesMut) {
+    match request {
+        Request::Join { to, sequence, chain } => {
+            put_addressed(JOIN, to, bytes);
+            bytes.put_slice(&[sequence, chain]);
+        }
+        Request::Accept { to, sequence } => {
+            put_addressed(ACCEPT, to, bytes);
+            bytes.put_u8(sequence);
+        }
+        Request::Refuse { to, sequence } => {
+            put_addressed(REFUSE, to, bytes);
+            bytes.put_u8(sequence);
+        }
+        Request::Release { to } => put_addressed(RELEASE, to, bytes),
+        Request::Order(order) => bytes.put_slice(&[ORDER, order.epoch, order.only.map_or(0, |target| target + 1)]),
+    }
+}
+
+fn put_addressed(kind: u8, to: ActorId, bytes: &mut BytesMut) {
+    let wide = is_wide(to);
+    bytes.put_u8(if wide { kind | WIDE_IDS } else { kind });
+    put_id(to, wide, bytes);
+}
+
+fn put_strand(kind: u8, strand: &Strand, bytes: &mut BytesMut) {
+    let wide = is_wide(strand.next) || strand.robots.iter().copied().any(is_wide);
+    bytes.put_u8(if wide { kind | WIDE_IDS } else { kind });
+    bytes.put_u8(strand.chain);
+    put_id(strand.next, wide, bytes);
+    bytes.put_u8(strand.robots.len() as u8);
+    for &robot in &strand.robots {
+        put_id(robot, wide, bytes);
+    }
+}
+
+const fn is_wide(id: ActorId) -> bool {
+    id.0 > 0xff
+}
+
+fn put_id(id: ActorId, wide: bool, bytes: &mut BytesMut) {
+    if wide {
+        bytes.put_u16(id.0 as u16);
+    } else {
+        bytes.put_u8(id.0 as u8);
+    }
+}
+
+impl Decoder for BackboneCodec {
+    type Item = Message;
+    type Error = CodecError;
+
+    fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<Message>, CodecError> {
+        if bytes.is_empty() {
+            return Ok(None);
+        }
+        let length = bytes.len();
+        let mut reader = Reader { bytes, length };
+        let first = reader.byte()?;
+        if let Some(role) = Role::ALL.get(usize::from(first)) {
+            return reader.status(*role).map(Some);
+        }
+        let wide = first & WIDE_IDS != 0;
+        let message = match first & !WIDE_IDS {
+            JOIN => Message::Request(Request::Join {
+                to: reader.id(wide)?,
+                sequence: reader.byte()?,
+                chain: reader.byte()?,
+            }),
+            ACCEPT => Message::Request(Request::Accept {
+                to: reader.id(wide)?,
+                sequence: reader.byte()?,
+            }),
+            REFUSE => Message::Request(Request::Refuse {
+                to: reader.id(wide)?,
+                sequence: reader.byte()?,
+            }),
+            RELEASE => Message::Request(Request::Release { to: reader.id(wide)? }),
+            ORDER => Message::Request(Request::Order(Order {
+                epoch: reader.byte()?,
+                only: reader.byte()?.checked_sub(1),
+            })),
+            PARENT_STRAND => Message::ParentStrand(reader.strand(wide)?),
+            CHILD_STRAND => Message::ChildStrand(reader.strand(wide)?),
+            _ => {
+                return Err(CodecError::Unknown {
+                    field: "message kind",
+                    value: first,
+                });
+            }
+        };
+        Ok(Some(message))
+    }
+}
+
+/// Reads a payload, and knows how long it was for its errors.
+struct Reader<'a> {
+    bytes: &'a mut BytesMut,
+    length: usize,
+}
+
+impl Reader<'_> {
+    fn byte(&mut self) -> Result<u8, CodecError> {
+        self.bytes.try_get_u8().map_err(|_| CodecError::Truncated(self.length))
+    }
+
+    fn id(&mut self, wide: bool) -> Result<ActorId, CodecError> {
+        let id = if wide {
+            let wide = self.bytes.try_get_u16();
+            wide.map_err(|_| CodecError::Truncated(self.length))?.into()
+        } else {
+            self.byte()?.into()
+        };
+        Ok(ActorId(id))
+    }
+
+    fn status(&mut self, role: Role) -> Result<Message, CodecError> {
+        let previous = self.byte()?;
+        let unknown = |field, value| CodecError::Unknown { field, value };
+        let previous = *Role::ALL
+            .get(usize::from(previous))
+            .ok_or(unknown("previous role", previous))?;
+        let need = match self.byte()? {
+            0 => false,
+            1 => true,
+            other => return Err(unknown("parent need", other)),
+        };
+        let chain = self.byte()?;
+        Ok(Message::Status(Status {
+            role,
+            previous,
+            need,
+            chain,
+        }))
+    }
+
+    fn strand(&mut self, wide: bool) -> Result<Strand, CodecError> {
+        let chain = self.byte()?;
+        let next = self.id(wide)?;
+        let robots = self.byte()?;
+        // The capacity is bounded by what is there, not by what the payload claims.
+        let mut strand = Vec::with_capacity(usize::from(robots).min(self.bytes.len()));
+        for _ in 0..robots {
+            strand.push(self.id(wide)?);
+        }
+        Ok(Strand {
+            chain,
+            next,
+            robots: strand,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn id() -> impl Strategy<Value = ActorId> {
+        prop_oneof![0_u32..256, 0_u32..65_536].prop_map(ActorId)
+    }
+
+    fn role() -> impl Strategy<Value = Role> {
+        (0_usize..4).prop_map(|index| Role::ALL[index])
+    }
+
+    fn strand() -> impl Strategy<Value = Strand> {
+        (any::<u8>(), id(), prop::collection::vec(id(), 0..256)).prop_map(|(chain, next, robots)| Strand {
+            chain,
+            next,
+            robots,
+        })
+    }
+
+    fn message() -> impl Strategy<Value = Message> {
+        let status = (role(), role(), any::<bool>(), any::<u8>()).prop_map(|(role, previous, need, chain)| {
+            Message::Status(Status {
+                role,
+                previous,
+                need,
+                chain,
+            })
+        });
+        let request = prop_oneof![
+            (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, chain)| Request::Join { to, sequence, chain }),
+            (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
+            (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
+            id().prop_map(|to| Request::Release { to }),
+            (any::<u8>(), prop::option::of(0_u8..255)).prop_map(|(epoch, only)| Request::Order(Order { epoch, only })),
+        ];
+        prop_oneof![
+            status,
+            request.prop_map(Message::Request),
+            strand().prop_map(Message::ParentStrand),
+            strand().prop_map(Message::ChildStrand),
+        ]
+    }
+
+    fn encoded(message: Message) -> BytesMut {
+        let mut bytes = BytesMut::new();
+        BackboneCodec.encode(message, &mut bytes).unwrap();
+        bytes
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_encoded_decodes_to_itself_and_leaves_nothing_over(message in message()) {
+            let mut bytes = encoded(message.clone());
+            prop_assert_eq!(BackboneCodec.decode(&mut bytes).unwrap(), Some(message));
+            prop_assert!(bytes.is_empty());
+        }
+
+        #[test]
+        fn a_payload_cut_short_is_refused(message in message(), cut in 1_usize..600) {
+            let mut bytes = encoded(message);
+            let kept = bytes.len().saturating_sub(cut).max(1);
+            prop_assume!(kept < bytes.len());
+            bytes.truncate(kept);
+            prop_assert!(matches!(BackboneCodec.decode(&mut bytes), Err(CodecError::Truncated(n)) if n == kept));
+        }
+
+        #[test]
+        fn arbitrary_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..64)) {
+            let _ = BackboneCodec.decode(&mut BytesMut::from(bytes.as_slice()));
+        }
+    }
+
+    #[test]
+    fn a_status_is_four_bytes_whatever_it_says() {
+        let status = Status {
+            role: Role::Networker,
+            previous: Role::Free,
+            need: true,
+            chain: 7,
+        };
+        assert_eq!(&encoded(Message::Status(status))[..], [2, 0, 1, 7]);
+    }
+
+    #[test]
+    fn ids_take_one_byte_while_all_fit_and_two_otherwise() {
+        let strand = |robots: &[u32]| {
+            Message::ChildStrand(Strand {
+                chain: 3,
+                next: ActorId(9),
+                robots: robots.iter().copied().map(ActorId).collect(),
+            })
+        };
+        assert_eq!(&encoded(strand(&[255, 1]))[..], [0x21, 3, 9, 2, 255, 1]);
+        assert_eq!(&encoded(strand(&[256, 1]))[..], [0xa1, 3, 0, 9, 2, 1, 0, 0, 1]);
+    }
+
+    #[test]
+    fn a_value_that_a_field_does_not_know_is_named() {
+        for (payload, field) in [
+            (&[9_u8, 0, 0, 0], "message kind"),
+            (&[0, 4, 0, 0], "previous role"),
+            (&[0, 0, 2, 0], "parent need"),
+        ] {
+            let error = BackboneCodec.decode(&mut BytesMut::from(&payload[..])).unwrap_err();
+            assert!(matches!(error, CodecError::Unknown { field: found, .. } if found == field));
+        }
+    }
+}

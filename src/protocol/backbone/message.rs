@@ -1,0 +1,126 @@
+//! What robots say: the paper's four topics (section 4.3).
+
+use crate::engine::ActorId;
+use crate::protocol;
+
+/// What a robot is to the backbone (paper section 4.1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Role {
+    /// Waits in the cluster around the root.
+    #[default]
+    Free,
+    /// The end of all chains.
+    Root,
+    /// A relay of a chain.
+    Networker,
+    /// Visits a target.
+    Worker,
+}
+
+impl Role {
+    /// All roles, in the order of their numbers.
+    pub const ALL: [Self; 4] = [Self::Free, Self::Root, Self::Networker, Self::Worker];
+
+    /// Its index into [`Protocol::ROLES`](protocol::Protocol::ROLES).
+    #[must_use]
+    pub const fn index(self) -> protocol::Role {
+        protocol::Role(self as u8)
+    }
+}
+
+/// A message. All are broadcast; those meant for one robot name it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Message {
+    /// Who I am now.
+    Status(Status),
+    /// Asks, answers and orders.
+    Request(Request),
+    /// The robots from the root to the sender.
+    ParentStrand(Strand),
+    /// The robots from the worker to the sender.
+    ChildStrand(Strand),
+}
+
+/// What every robot says of itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Status {
+    /// Its role.
+    pub role: Role,
+    /// The role that it had before.
+    pub previous: Role,
+    /// Parent need: whether its chain must grow for the worker to reach the target.
+    pub need: bool,
+    /// The chain that it belongs to, from 1; a worker names the first of its chains; 0 for none.
+    pub chain: u8,
+}
+
+/// The request and response topic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// Asks a free robot to become the sender's parent in a chain.
+    Join {
+        /// The robot asked.
+        to: ActorId,
+        /// Number of this request among the sender's; repetitions have the same.
+        sequence: u8,
+        /// The chain to join.
+        chain: u8,
+    },
+    /// Yes to the request with this number.
+    Accept {
+        /// Who asked.
+        to: ActorId,
+        /// The request's number.
+        sequence: u8,
+    },
+    /// No to the request with this number.
+    Refuse {
+        /// Who asked.
+        to: ActorId,
+        /// The request's number.
+        sequence: u8,
+    },
+    /// The sender does not count on this robot as its parent: it is free again.
+    Release {
+        /// The robot let go.
+        to: ActorId,
+    },
+    /// The root's order of what to expand, passed on from robot to robot.
+    Order(Order),
+}
+
+/// Which targets are expanded (paper algorithm 3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Order {
+    /// Number of the order; 0 is the state at the start, before any order.
+    pub epoch: u8,
+    /// The only target to expand, or none if all are.
+    pub only: Option<u8>,
+}
+
+impl Order {
+    /// Whether it was given after `other`. Numbers wrap: the one less than half a turn ahead is the newer.
+    #[must_use]
+    pub const fn is_newer_than(self, other: Self) -> bool {
+        self.epoch.wrapping_sub(other.epoch).cast_signed() > 0
+    }
+
+    /// Whether `target` is to be expanded.
+    #[must_use]
+    pub fn expands(self, target: u8) -> bool {
+        self.only.is_none_or(|only| only == target)
+    }
+}
+
+/// The robots of a chain, from one of its ends up to the sender.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Strand {
+    /// The chain, from 1; 0 in the root's own strand, which is every chain's.
+    pub chain: u8,
+    /// The robot that the sender counts on as the next of the chain, by which the two verify that they are linked. The
+    /// root, which is linked to whoever names it, names itself.
+    pub next: ActorId,
+    /// The robots, the sender last.
+    pub robots: Vec<ActorId>,
+}

@@ -1,0 +1,280 @@
+//! What every robot is given before the start: the targets, the root, the workers, and the settings in working units.
+
+use crate::engine::{ActorId, Span};
+use crate::geometry::{Pose, Vec2, direction};
+use crate::protocol::detector::DetectorConfig;
+use crate::protocol::gossip::GossipConfig;
+
+use super::config::BackboneConfig;
+
+/// The mission: the same for all robots, and known to all from the start (paper section 4.1).
+#[derive(Debug)]
+pub struct Mission {
+    /// The robot that every chain ends at.
+    pub root: ActorId,
+    /// Where the root stands, metres in the arena's axes.
+    pub origin: Vec2,
+    /// The targets.
+    pub targets: Vec<Target>,
+    /// All chains, target by target. Chain number c, from 1, is the entry c − 1.
+    pub chains: Vec<Chain>,
+    /// The settings.
+    pub parameters: Parameters,
+}
+
+/// A target and who works there.
+#[derive(Clone, Debug)]
+pub struct Target {
+    /// Its place, metres in the arena's axes.
+    pub at: Vec2,
+    /// The robot that visits it.
+    pub worker: ActorId,
+    /// Numbers of its chains.
+    pub chains: std::ops::Range<u8>,
+}
+
+/// One chain from the root to a worker.
+#[derive(Clone, Copy, Debug)]
+pub struct Chain {
+    /// The target that it leads to, an index into [`Mission::targets`].
+    pub target: u8,
+    /// Networkers that it needs, the fewest that will do (paper eq. 2).
+    pub relays: usize,
+    /// Length of its springs, metres.
+    pub rest: f64,
+    /// The way from the root to the target, a unit vector.
+    pub forward: Vec2,
+    /// Where it runs beside the straight line from the root to the target, metres to the left.
+    pub lane: f64,
+}
+
+/// Settings in metres, m/s, 1/s and whole control steps. See [`BackboneConfig`] for what they mean.
+#[derive(Clone, Debug)]
+#[allow(missing_docs)]
+pub struct Parameters {
+    pub safe: f64,
+    pub gate: f64,
+    pub critical: f64,
+    pub threshold: f64,
+    pub spring_gain: f64,
+    pub target_gain: f64,
+    pub push_limit: f64,
+    pub lane_gain: f64,
+    pub lj_gain: f64,
+    pub lj_delta: f64,
+    pub avoidance_range: f64,
+    pub backbone_avoidance_range: f64,
+    pub avoidance_gain: f64,
+    pub rest_speed: f64,
+    pub stall_steps: u64,
+    pub recruit_ratio: f64,
+    pub request_patience: u64,
+    pub refusal_memory: u64,
+    pub join_timeout: u64,
+    pub shortage_patience: u64,
+    pub visit: u64,
+    pub status_every: u64,
+    pub strand_every: u64,
+    pub request_every: u64,
+    /// Silence after which a neighbour is no longer counted on.
+    pub silence: Span,
+}
+
+impl Mission {
+    /// The mission of robots that start at `poses`: the root is the robot nearest to the centre, a worker is the robot
+    /// nearest to its target that has no such duty yet.
+    #[must_use]
+    pub fn new(config: &BackboneConfig, parameters: Parameters, poses: &[Pose]) -> Self {
+        let mut assigned = vec![false; poses.len()];
+        let mut assign_nearest = |place: Vec2| {
+            let nearest = (0..poses.len()).filter(|&robot| !assigned[robot]).min_by(|&a, &b| {
+                let distance = |robot: usize| (poses[robot].position - place).norm_squared();
+                distance(a).total_cmp(&distance(b))
+            });
+            let robot = nearest.expect("a checked scenario has a robot for the root and for each target");
+            assigned[robot] = true;
+            robot
+        };
+        let root = assign_nearest(Vec2::zeros());
+        let origin = poses[root].position;
+        let mut chains = Vec::new();
+        let mut targets = Vec::new();
+        for (index, (at, links)) in config.targets().into_iter().enumerate() {
+            let first = chains.len() as u8 + 1;
+            chains.extend(parallel_chains(config, index as u8, at - origin, links));
+            targets.push(Target {
+                at,
+                worker: ActorId(assign_nearest(at) as u32),
+                chains: first..first + links,
+            });
+        }
+        Self {
+            root: ActorId(root as u32),
+            origin,
+            targets,
+            chains,
+            parameters,
+        }
+    }
+
+    /// The chain with number `number`, from 1.
+    #[must_use]
+    pub fn chain(&self, number: u8) -> &Chain {
+        &self.chains[usize::from(number) - 1]
+    }
+
+    /// Whether `number` is a chain's.
+    #[must_use]
+    pub fn has_chain(&self, number: u8) -> bool {
+        (1..=self.chains.len()).contains(&usize::from(number))
+    }
+
+    /// The target that `robot` was assigned to as its worker.
+    #[must_use]
+    pub fn worker_target(&self, robot: ActorId) -> Option<u8> {
+        let index = self.targets.iter().position(|target| target.worker == robot)?;
+        Some(index as u8)
+    }
+}
+
+/// The `links` chains to target number `target`, which lies at `displacement` from the root.
+fn parallel_chains(config: &BackboneConfig, target: u8, displacement: Vec2, links: u8) -> impl Iterator<Item = Chain> {
+    let safe = config.safe_distance.get();
+    let distance = displacement.norm();
+    let relays = relays_needed(distance, config.movement_threshold.get(), safe);
+    let even = distance / (relays + 1) as f64;
+    let rest = safe.min(config.motion.taut_ratio.get() * even);
+    let gaps = f64::from(links.saturating_sub(1));
+    // However many the chains, the outermost stay within a spring's reach of each other.
+    let spacing = config.motion.lane_spacing.get().min(safe / gaps.max(1.0));
+    (0..links).map(move |link| Chain {
+        target,
+        relays,
+        rest,
+        forward: direction(displacement),
+        lane: (f64::from(link) - gaps / 2.0) * spacing,
+    })
+}
+
+/// The fewest relays that bring a worker within `threshold` of a target `distance` away in hops of at most `safe`.
+#[must_use]
+pub fn relays_needed(distance: f64, threshold: f64, safe: f64) -> usize {
+    let hops = ((distance - threshold) / safe - 1e-9).ceil();
+    (hops as usize).saturating_sub(1)
+}
+
+impl Parameters {
+    /// The settings of a scenario, for robots that wake every `control_period`.
+    #[must_use]
+    pub fn new(
+        config: &BackboneConfig,
+        gossip: &GossipConfig,
+        detector: &DetectorConfig,
+        control_period: Span,
+    ) -> Self {
+        let steps = |seconds: f64| (seconds / control_period.as_secs()).ceil() as u64;
+        let DetectorConfig::Timeout(silence) = detector;
+        let law = &config.motion;
+        let strand_every = gossip.strand.steps(control_period);
+        let request_every = gossip.request.steps(control_period);
+        Self {
+            safe: config.safe_distance.get(),
+            gate: law.movement_gate.get(),
+            critical: config.critical_distance.get(),
+            threshold: config.movement_threshold.get(),
+            spring_gain: config.spring_gain.get(),
+            target_gain: law.target_gain.get(),
+            push_limit: law.push_limit.get(),
+            lane_gain: law.lane_gain.get(),
+            lj_gain: config.lj_epsilon.get() * law.lj_speed.get(),
+            lj_delta: config.lj_delta.get(),
+            avoidance_range: law.avoidance_range.get(),
+            backbone_avoidance_range: law.backbone_avoidance_range.get(),
+            avoidance_gain: law.avoidance_gain.get(),
+            rest_speed: law.rest_speed.get(),
+            stall_steps: steps(law.stall_time.get()),
+            recruit_ratio: config.recruiting.distance_ratio.get(),
+            // Patience counts repetitions too, so that rare gossip does not undo every join.
+            request_patience: steps(config.recruiting.patience.get()).max(REPETITIONS * request_every),
+            refusal_memory: steps(config.recruiting.refusal_memory.get()),
+            join_timeout: steps(config.recruiting.join_timeout.get())
+                .max(REPETITIONS * strand_every)
+                .max(REPETITIONS * request_every),
+            shortage_patience: steps(config.shortage.patience.get()),
+            visit: steps(config.shortage.visit.get()),
+            status_every: gossip.status.steps(control_period),
+            strand_every,
+            request_every,
+            silence: Span::from_secs(silence.get()),
+        }
+    }
+}
+
+/// Repetitions of a message that may be lost before a join is given up.
+const REPETITIONS: u64 = 5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mission(links: u8, poses: &[(f64, f64)]) -> Mission {
+        let config: BackboneConfig =
+            ron::from_str(&format!("(targets: Ring(count: 4, radius: 4.5, links: {links}))")).unwrap();
+        let parameters = Parameters::new(
+            &config,
+            &GossipConfig::default(),
+            &DetectorConfig::default(),
+            Span::from_secs(0.1),
+        );
+        let poses: Vec<Pose> = poses
+            .iter()
+            .map(|&(x, y)| Pose {
+                position: Vec2::new(x, y),
+                heading: 0.0,
+            })
+            .collect();
+        Mission::new(&config, parameters, &poses)
+    }
+
+    #[test]
+    fn the_root_is_the_most_central_robot_and_each_worker_the_nearest_one_left() {
+        let mission = mission(
+            1,
+            &[(0.5, 0.0), (0.1, 0.0), (0.6, 0.1), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5)],
+        );
+        assert_eq!(mission.root, ActorId(1));
+        let workers: Vec<u32> = mission.targets.iter().map(|target| target.worker.0).collect();
+        assert_eq!(workers, [2, 3, 4, 5]);
+        assert_eq!(mission.worker_target(ActorId(4)), Some(2));
+        assert_eq!(mission.worker_target(ActorId(0)), None);
+    }
+
+    #[test]
+    fn the_papers_targets_need_two_relays_a_chain() {
+        assert_eq!(relays_needed(4.5, 0.3, 1.4), 2);
+        assert_eq!(relays_needed(4.6, 0.3, 1.4), 3);
+        assert_eq!(relays_needed(1.0, 0.3, 1.4), 0);
+        assert_eq!(relays_needed(0.1, 0.3, 1.4), 0);
+    }
+
+    #[test]
+    fn chains_are_numbered_from_one_and_lie_symmetrically_beside_the_straight_line() {
+        let mission = mission(3, &[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)]);
+        assert_eq!(mission.chains.len(), 12);
+        assert_eq!(mission.targets[1].chains, 4..7);
+        let lanes: Vec<f64> = (4..7).map(|number| mission.chain(number).lane).collect();
+        assert_eq!(lanes, [-0.35, 0.0, 0.35]);
+        assert!(mission.has_chain(12) && !mission.has_chain(13) && !mission.has_chain(0));
+    }
+
+    #[test]
+    fn springs_are_shorter_than_the_even_spacing_so_that_a_finished_chain_is_taut() {
+        for distance in [2.0, 3.2, 4.5, 6.4] {
+            let config: BackboneConfig =
+                ron::from_str(&format!("(targets: Ring(count: 1, radius: {distance:?}))")).unwrap();
+            let chain = parallel_chains(&config, 0, Vec2::new(distance, 0.0), 1).next().unwrap();
+            assert!(chain.rest < distance / (chain.relays + 1) as f64);
+            assert!(chain.rest <= 1.4);
+        }
+    }
+}

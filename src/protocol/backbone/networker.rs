@@ -1,0 +1,204 @@
+//! The networker: a relay of one chain (paper algorithm 2, eq. 14 to 16).
+
+use crate::engine::ActorId;
+use crate::geometry::Vec2;
+
+use super::forces;
+use super::message::{Message, Request, Strand};
+use super::mission::Chain;
+use super::recruit::{Recruiter, Slot, joining_place};
+use super::strand;
+use super::view::View;
+
+/// A networker's state. Until its child's strand names it, it is a joiner on the way to its place.
+#[derive(Debug)]
+pub struct Networker {
+    /// Its place for a parent.
+    pub slot: Slot,
+    /// The robot that recruited it.
+    child: ActorId,
+    /// Number of the request that it accepted.
+    sequence: u8,
+    /// Whether its child counts on it.
+    linked: bool,
+    /// The control step of the child's last sign that it does, or will.
+    confirmed: u64,
+    /// The robots from the worker to the child, as last heard.
+    outer: Vec<ActorId>,
+}
+
+impl Networker {
+    /// A joiner that accepted request number `sequence` of `child` at control step `step`.
+    #[must_use]
+    pub fn new(chain: u8, child: ActorId, sequence: u8, root: ActorId, step: u64) -> Self {
+        Self {
+            slot: Slot::new(chain, root),
+            child,
+            sequence,
+            linked: false,
+            confirmed: step,
+            outer: Vec::new(),
+        }
+    }
+
+    /// Answers a request to join: the one that it accepted it accepts again, for its answer may have been lost.
+    pub fn hear_join(&mut self, sender: ActorId, sequence: u8, chain: u8, step: u64) -> Request {
+        if sender != self.child || chain != self.slot.chain {
+            return Request::Refuse { to: sender, sequence };
+        }
+        self.sequence = sequence;
+        self.confirmed = step;
+        Request::Accept { to: sender, sequence }
+    }
+
+    /// Takes in a child strand: if it is the child's and names `me`, the two are linked.
+    pub fn hear_child_strand(&mut self, sender: ActorId, heard: &Strand, me: ActorId, step: u64) {
+        let named = sender == self.child && heard.chain == self.slot.chain && heard.next == me;
+        if named && strand::keep(&mut self.outer, &heard.robots, me) {
+            self.linked = true;
+            self.confirmed = step;
+        }
+    }
+
+    /// Whether its child counts on it.
+    #[must_use]
+    pub const fn is_linked(&self) -> bool {
+        self.linked
+    }
+
+    /// Whether a release by `sender` frees it.
+    #[must_use]
+    pub fn is_released_by(&self, sender: ActorId) -> bool {
+        sender == self.child
+    }
+
+    /// Whether the chain has no use for it any more: its child does not count on it, or the chain is dismantled and it
+    /// has come home behind its child.
+    #[must_use]
+    pub fn is_done(&self, view: &View<'_>) -> bool {
+        if view.step - self.confirmed > view.parameters().join_timeout {
+            return true;
+        }
+        let is_home = |place: Vec2| (place - view.mission.origin).norm() <= view.parameters().safe;
+        let child = view.neighbours.get(self.child);
+        !view.expands(self.slot.chain)
+            && is_home(view.position)
+            && child.is_none_or(|child| is_home(child.position) || child.status.chain != self.slot.chain)
+    }
+
+    /// The need that it passes on: its child's.
+    #[must_use]
+    pub fn need(&self, view: &View<'_>) -> bool {
+        self.linked && view.neighbours.get(self.child).is_some_and(|child| child.status.need)
+    }
+
+    /// One control step: recruits where the chain must grow, and answers with the velocity that it wants.
+    pub fn control(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) -> Vec2 {
+        let wanted = self.wants_parent(view);
+        self.slot.tend(view, wanted, recruiter, out);
+        if !self.linked {
+            self.joining(view)
+        } else if view.expands(self.slot.chain) {
+            self.holding(view)
+        } else {
+            self.retreating(view)
+        }
+    }
+
+    /// Whether the chain needs a relay between this robot and the root.
+    fn wants_parent(&self, view: &View<'_>) -> bool {
+        let chain = view.mission.chain(self.slot.chain);
+        // The strand holds the worker and the relays up to the child: with this robot, as many relays as it has robots.
+        self.slot.is_at_root(view)
+            && self.need(view)
+            && self.outer.len() < chain.relays
+            && view.expands(self.slot.chain)
+            && view.way_to_root().norm() >= view.parameters().recruit_ratio * chain.rest
+    }
+
+    /// Heads for its place beside its child.
+    fn joining(&self, view: &View<'_>) -> Vec2 {
+        let parameters = view.parameters();
+        let Some(child) = view.neighbours.get(self.child) else {
+            return Vec2::zeros();
+        };
+        let rest = view.mission.chain(self.slot.chain).rest;
+        let place = joining_place(view.mission.origin, child.position, rest);
+        let desired = (place - view.position) * parameters.spring_gain;
+        desired + self.avoidance(view, desired)
+    }
+
+    /// Keeps its distance from parent and child (paper eq. 14).
+    fn holding(&self, view: &View<'_>) -> Vec2 {
+        let parameters = view.parameters();
+        let chain = view.mission.chain(self.slot.chain);
+        let Some(parent) = view.way_to(self.slot.parent) else {
+            return Vec2::zeros();
+        };
+        let spring = |way| forces::spring(way, chain.rest, parameters.spring_gain, parameters.push_limit);
+        if parent.norm() >= parameters.critical {
+            return spring(parent);
+        }
+        let child = view.way_to(self.child);
+        let desired = spring(parent) + child.map_or_else(Vec2::zeros, spring) + lane_pull(view, chain);
+        let shorter = child.map_or(f64::INFINITY, |child| child.norm()).min(parent.norm());
+        let open = forces::gate(shorter, parameters.safe, parameters.gate);
+        desired + self.avoidance(view, desired) * open
+    }
+
+    /// Comes home ahead of its child, never so fast that the child falls behind.
+    fn retreating(&self, view: &View<'_>) -> Vec2 {
+        let parameters = view.parameters();
+        let behind = view.way_to(self.child).map_or(0.0, |child| child.norm());
+        let open = forces::gate(behind, parameters.safe, parameters.gate);
+        let home = forces::spring(
+            view.way_to_root(),
+            AT_HOME * parameters.safe,
+            parameters.spring_gain,
+            0.0,
+        );
+        let desired = home * open;
+        desired + self.avoidance(view, desired)
+    }
+
+    fn avoidance(&self, view: &View<'_>, desired: Vec2) -> Vec2 {
+        let parameters = view.parameters();
+        let range = if self.linked {
+            parameters.backbone_avoidance_range
+        } else {
+            parameters.avoidance_range
+        };
+        forces::obstacle(desired, view.proximity, range, parameters.avoidance_gain)
+    }
+
+    /// The strands that it sends: to its child the way to the root, to its parent the way to the worker.
+    pub fn strands(&self, me: ActorId, out: &mut Vec<Message>) {
+        out.push(Message::ParentStrand(Strand {
+            chain: self.slot.chain,
+            next: self.child,
+            robots: strand::passed_on(&self.slot.strand, me),
+        }));
+        if self.linked {
+            out.push(Message::ChildStrand(Strand {
+                chain: self.slot.chain,
+                next: self.slot.parent,
+                robots: strand::passed_on(&self.outer, me),
+            }));
+        }
+    }
+}
+
+/// How near to the root a retreating robot comes, in safe distances: near enough to be home.
+const AT_HOME: f64 = 0.9;
+
+fn lane_pull(view: &View<'_>, chain: &Chain) -> Vec2 {
+    let parameters = view.parameters();
+    forces::lane_pull(
+        -view.way_to_root(),
+        chain.forward,
+        chain.lane,
+        chain.rest,
+        parameters.lane_gain,
+        parameters.push_limit,
+    )
+}

@@ -1,0 +1,211 @@
+//! Recruiting: how a robot at the root's end of a chain wins a free robot as its new parent.
+//!
+//! Only a robot whose parent is the root recruits, so chains are fed at the root and pushed outwards. It asks one free
+//! robot, again and again until there is an answer. The robot that accepts comes as a *joiner*: it knows its child, but
+//! the child keeps the root as its parent until the joiner is in place and its strand names the child. Then the child's
+//! own strand names the joiner, by which it knows that it is linked. Whatever is lost on the way, each end undoes its
+//! half after a time without a sign from the other.
+
+use crate::engine::ActorId;
+use crate::geometry::{Vec2, direction};
+
+use super::message::{Message, Request, Role, Strand};
+use super::strand;
+use super::view::View;
+
+/// How far ahead of the root, towards its child, a joiner must be before it takes its place, as a share of its chain's
+/// spring length: from behind the root, springs would push it the wrong way.
+const AHEAD: f64 = 0.15;
+
+/// A robot's place for one parent. A worker has one a link, a networker has one.
+#[derive(Debug)]
+pub struct Slot {
+    /// The chain, from 1.
+    pub chain: u8,
+    /// The parent, at first the root.
+    pub parent: ActorId,
+    /// The robots from the root to the parent, as last heard.
+    pub strand: Vec<ActorId>,
+    /// Who was asked to become the parent in the root's stead.
+    invitation: Option<Invitation>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Invitation {
+    to: ActorId,
+    sequence: u8,
+    /// Whether it was accepted.
+    accepted: bool,
+    /// The control step of the request, and then of the last sign of the one who accepted.
+    sign: u64,
+}
+
+/// What a robot remembers about recruiting, over all its slots.
+#[derive(Debug, Default)]
+pub struct Recruiter {
+    sequence: u8,
+    /// Robots asked lately, and the control step until which they are not asked again.
+    asked: Vec<(ActorId, u64)>,
+}
+
+impl Recruiter {
+    /// The known free robot nearest to `place` that was not asked lately.
+    fn candidate(&mut self, view: &View<'_>, place: Vec2) -> Option<ActorId> {
+        self.asked.retain(|(_, until)| *until > view.step);
+        view.neighbours
+            .iter()
+            .filter(|known| known.status.role == Role::Free && !self.asked.iter().any(|(id, _)| *id == known.id))
+            .min_by(|a, b| {
+                let distance = |position: Vec2| (position - place).norm_squared();
+                let nearer = distance(a.position).total_cmp(&distance(b.position));
+                nearer.then(a.id.cmp(&b.id))
+            })
+            .map(|known| known.id)
+    }
+
+    fn invite(&mut self, view: &View<'_>, to: ActorId) -> Invitation {
+        self.sequence = self.sequence.wrapping_add(1);
+        self.asked.push((to, view.step + view.parameters().refusal_memory));
+        Invitation {
+            to,
+            sequence: self.sequence,
+            accepted: false,
+            sign: view.step,
+        }
+    }
+}
+
+impl Slot {
+    /// A slot of chain number `chain` whose parent is the root.
+    #[must_use]
+    pub fn new(chain: u8, root: ActorId) -> Self {
+        Self {
+            chain,
+            parent: root,
+            strand: vec![root],
+            invitation: None,
+        }
+    }
+
+    /// Whether the slot's parent is the root.
+    #[must_use]
+    pub fn is_at_root(&self, view: &View<'_>) -> bool {
+        self.parent == view.mission.root
+    }
+
+    /// Does what a control step asks for: drops what is over, swaps in a joiner that is in place, and recruits where one
+    /// is `wanted`.
+    pub fn tend(&mut self, view: &View<'_>, wanted: bool, recruiter: &mut Recruiter, out: &mut Vec<Message>) {
+        self.give_up_a_lost_parent(view);
+        self.settle_invitation(view, wanted);
+        if wanted && self.invitation.is_none() {
+            let place = joining_place(view.mission.origin, view.position, view.mission.chain(self.chain).rest);
+            self.invitation = recruiter
+                .candidate(view, place)
+                .map(|candidate| recruiter.invite(view, candidate));
+        }
+        if let Some(invitation) = self.invitation
+            && view.turn().is_multiple_of(view.parameters().request_every)
+        {
+            out.push(Message::Request(Request::Join {
+                to: invitation.to,
+                sequence: invitation.sequence,
+                chain: self.chain,
+            }));
+        }
+    }
+
+    /// A parent that says that it serves this chain no more is replaced by the root, from which it was recruited.
+    fn give_up_a_lost_parent(&mut self, view: &View<'_>) {
+        let lost = view.neighbours.get(self.parent).is_some_and(|parent| {
+            parent.id != view.mission.root
+                && (parent.status.role != Role::Networker || parent.status.chain != self.chain)
+        });
+        if lost {
+            *self = Self::new(self.chain, view.mission.root);
+        }
+    }
+
+    /// Ends an invitation that has led to a parent or that has led to nothing.
+    fn settle_invitation(&mut self, view: &View<'_>, wanted: bool) {
+        let Some(invitation) = self.invitation else { return };
+        if invitation.accepted && self.is_in_place(view, invitation.to) {
+            self.parent = invitation.to;
+            self.strand = vec![view.mission.root, invitation.to];
+            self.invitation = None;
+            return;
+        }
+        let parameters = view.parameters();
+        let patience = if invitation.accepted {
+            parameters.join_timeout
+        } else {
+            parameters.request_patience
+        };
+        if view.step - invitation.sign > patience || (!wanted && !invitation.accepted) {
+            self.invitation = None;
+        }
+    }
+
+    /// Whether `joiner` stands where it can take over: near to this robot, near to the root, and ahead of it.
+    fn is_in_place(&self, view: &View<'_>, joiner: ActorId) -> bool {
+        let Some(known) = view.neighbours.get(joiner) else {
+            return false;
+        };
+        let parameters = view.parameters();
+        let from_root = known.position - view.mission.origin;
+        let ahead = from_root.dot(&direction(view.position - view.mission.origin));
+        known.status.role == Role::Networker
+            && known.status.chain == self.chain
+            && (known.position - view.position).norm() <= parameters.safe
+            && from_root.norm() <= parameters.gate
+            && ahead >= AHEAD * view.mission.chain(self.chain).rest
+    }
+
+    /// Takes in that `sender` accepted request number `sequence`. Says whether that makes sense here.
+    pub fn hear_accept(&mut self, sender: ActorId, sequence: u8, step: u64) -> bool {
+        match &mut self.invitation {
+            Some(invitation) if invitation.to == sender && invitation.sequence == sequence => {
+                invitation.accepted = true;
+                invitation.sign = step;
+                true
+            }
+            // A repeated answer from one that is a parent already.
+            _ => self.parent == sender,
+        }
+    }
+
+    /// Takes in that `sender` refused request number `sequence`.
+    pub fn hear_refuse(&mut self, sender: ActorId, sequence: u8) {
+        let refused = |invitation: &Invitation| invitation.to == sender && invitation.sequence == sequence;
+        if self.invitation.as_ref().is_some_and(refused) {
+            self.invitation = None;
+        }
+    }
+
+    /// Takes in the parent strand of `sender`. Says whether `sender` is a parent or a joiner of this slot.
+    pub fn hear_parent_strand(&mut self, sender: ActorId, heard: &Strand, me: ActorId, step: u64) -> bool {
+        if sender == self.parent {
+            if heard.chain == 0 || (heard.chain == self.chain && heard.next == me) {
+                strand::keep(&mut self.strand, &heard.robots, me);
+            }
+            return true;
+        }
+        match &mut self.invitation {
+            Some(invitation) if invitation.to == sender && heard.chain == self.chain && heard.next == me => {
+                invitation.accepted = true;
+                invitation.sign = step;
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Where a joiner goes: on the way from the root at `origin` to its child at `child`, a spring's length before it, but
+/// well ahead of the root.
+#[must_use]
+pub fn joining_place(origin: Vec2, child: Vec2, rest: f64) -> Vec2 {
+    let way = child - origin;
+    let ahead = (way.norm() - rest).max(2.0 * AHEAD * rest).min(rest);
+    origin + direction(way) * ahead
+}

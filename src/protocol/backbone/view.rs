@@ -1,0 +1,98 @@
+//! What a robot knows whatever its role, and what its role routine may look at when it decides.
+
+use std::rc::Rc;
+
+use crate::engine::ActorId;
+use crate::geometry::Vec2;
+
+use super::message::Order;
+use super::mission::{Mission, Parameters};
+use super::neighbours::Neighbours;
+
+/// What a robot knows whatever its role.
+#[derive(Debug)]
+pub struct Knowledge {
+    /// The robot itself.
+    pub id: ActorId,
+    /// The mission.
+    pub mission: Rc<Mission>,
+    /// Its control steps so far.
+    pub step: u64,
+    /// Where it is, metres, in the arena's axes.
+    pub position: Vec2,
+    /// Whom it heard of late.
+    pub neighbours: Neighbours,
+    /// The newest order that it knows of.
+    pub order: Order,
+}
+
+impl Knowledge {
+    /// The view of it for one control step, with near bodies as sensed then.
+    #[must_use]
+    pub fn view<'a>(&'a self, proximity: &'a [Vec2]) -> View<'a> {
+        View {
+            id: self.id,
+            step: self.step,
+            position: self.position,
+            proximity,
+            neighbours: &self.neighbours,
+            mission: &self.mission,
+            order: self.order,
+        }
+    }
+}
+
+/// A robot's view at one control step.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The robot itself.
+    pub id: ActorId,
+    /// Its control steps so far.
+    pub step: u64,
+    /// Where it is, metres, in the arena's axes.
+    pub position: Vec2,
+    /// Vectors from its edge to near bodies.
+    pub proximity: &'a [Vec2],
+    /// Whom it heard of late.
+    pub neighbours: &'a Neighbours,
+    /// The mission.
+    pub mission: &'a Mission,
+    /// What is to be expanded.
+    pub order: Order,
+}
+
+impl<'a> View<'a> {
+    /// Its number among those that take turns where a message is not sent at every step.
+    #[must_use]
+    pub fn turn(&self) -> u64 {
+        self.step + u64::from(self.id.0)
+    }
+
+    /// The settings.
+    #[must_use]
+    pub fn parameters(&self) -> &'a Parameters {
+        &self.mission.parameters
+    }
+
+    /// The way to the root, which stands where the mission says.
+    #[must_use]
+    pub fn way_to_root(&self) -> Vec2 {
+        self.mission.origin - self.position
+    }
+
+    /// The way to `robot`, if it is the root or was heard of late.
+    #[must_use]
+    pub fn way_to(&self, robot: ActorId) -> Option<Vec2> {
+        if robot == self.mission.root {
+            Some(self.way_to_root())
+        } else {
+            self.neighbours.get(robot).map(|known| known.position - self.position)
+        }
+    }
+
+    /// Whether chain number `chain` is to be built or kept.
+    #[must_use]
+    pub fn expands(&self, chain: u8) -> bool {
+        self.order.expands(self.mission.chain(chain).target)
+    }
+}

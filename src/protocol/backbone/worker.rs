@@ -1,0 +1,149 @@
+//! The worker: visits a target, and stays linked to the root by as many chains as the target needs (paper algorithm 1,
+//! eq. 10 to 13).
+
+use crate::engine::ActorId;
+use crate::geometry::Vec2;
+
+use super::forces;
+use super::free;
+use super::message::{Message, Strand};
+use super::mission::{Mission, Parameters};
+use super::recruit::{Recruiter, Slot};
+use super::view::View;
+
+/// A worker's state.
+#[derive(Debug)]
+pub struct Worker {
+    /// Its target, an index into the mission's.
+    pub target: u8,
+    /// Its places for parents, one a link.
+    pub slots: Vec<Slot>,
+}
+
+impl Worker {
+    /// The worker of target number `target`, at first linked to the root itself by all its chains.
+    #[must_use]
+    pub fn new(target: u8, mission: &Mission) -> Self {
+        let chains = mission.targets[usize::from(target)].chains.clone();
+        Self {
+            target,
+            slots: chains.map(|chain| Slot::new(chain, mission.root)).collect(),
+        }
+    }
+
+    /// The first of its chains.
+    #[must_use]
+    pub fn first_chain(&self) -> u8 {
+        self.slots.first().map_or(0, |slot| slot.chain)
+    }
+
+    /// Whether its chains must still grow: it is sent out and its target not reached.
+    #[must_use]
+    pub fn need(&self, view: &View<'_>) -> bool {
+        view.order.expands(self.target) && self.way_to_target(view).norm() > view.parameters().threshold
+    }
+
+    fn way_to_target(&self, view: &View<'_>) -> Vec2 {
+        view.mission.targets[usize::from(self.target)].at - view.position
+    }
+
+    /// One control step: recruits where a link needs it, and answers with the velocity that it wants.
+    pub fn control(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) -> Vec2 {
+        let need = self.need(view);
+        let out_of_reach = view.way_to_root().norm();
+        for slot in &mut self.slots {
+            let chain = view.mission.chain(slot.chain);
+            let wanted = need
+                && slot.is_at_root(view)
+                && chain.relays > 0
+                && out_of_reach >= view.parameters().recruit_ratio * chain.rest;
+            slot.tend(view, wanted, recruiter, out);
+        }
+        if view.order.expands(self.target) {
+            self.advancing(view)
+        } else {
+            self.retreating(view)
+        }
+    }
+
+    /// Makes for the target as far as the springs to its parents allow (paper eq. 10).
+    fn advancing(&self, view: &View<'_>) -> Vec2 {
+        let parameters = view.parameters();
+        let pull = self.pull_of_parents(view);
+        if pull.farthest >= parameters.critical {
+            return pull.leash;
+        }
+        // The gate opens a safe distance's slack before it closes: at rest under tension it must be open.
+        let opening = f64::midpoint(parameters.safe, parameters.gate);
+        let open = forces::gate(pull.farthest, opening, parameters.gate);
+        let to_target = forces::target(self.way_to_target(view), parameters.target_gain);
+        let desired = pull.springs + to_target * open;
+        desired + avoidance(view, desired, parameters) * open
+    }
+
+    /// Comes home along its chains, and then waits like a free robot.
+    fn retreating(&self, view: &View<'_>) -> Vec2 {
+        let parameters = view.parameters();
+        let pull = self.pull_of_parents(view);
+        if pull.farthest >= parameters.critical {
+            return pull.leash;
+        }
+        let root = view.way_to_root();
+        if root.norm() <= parameters.safe {
+            return free::velocity(view);
+        }
+        let desired = root * parameters.spring_gain;
+        desired + avoidance(view, desired, parameters)
+    }
+
+    fn pull_of_parents(&self, view: &View<'_>) -> Pull {
+        let parameters = view.parameters();
+        let mut pull = Pull::default();
+        for (index, slot) in self.slots.iter().enumerate() {
+            // The parents are a set (paper section 4.1): the root counts once, however many links still end there.
+            let counted = self.slots[..index].iter().any(|earlier| earlier.parent == slot.parent);
+            let Some(way) = view.way_to(slot.parent).filter(|_| !counted) else {
+                continue;
+            };
+            let rest = view.mission.chain(slot.chain).rest;
+            let spring = forces::spring(way, rest, parameters.spring_gain, parameters.push_limit);
+            pull.springs += spring;
+            pull.farthest = pull.farthest.max(way.norm());
+            if way.norm() >= parameters.critical {
+                pull.leash += spring;
+            }
+        }
+        pull
+    }
+
+    /// The strands that it sends to its parents, one a link.
+    pub fn strands(&self, me: ActorId, out: &mut Vec<Message>) {
+        out.extend(self.slots.iter().map(|slot| {
+            Message::ChildStrand(Strand {
+                chain: slot.chain,
+                next: slot.parent,
+                robots: vec![me],
+            })
+        }));
+    }
+}
+
+/// What a worker's parents do to it.
+#[derive(Default)]
+struct Pull {
+    /// u^sd, the sum of all springs (paper eq. 11).
+    springs: Vec2,
+    /// u^p, the springs to parents that are at the critical distance or beyond.
+    leash: Vec2,
+    /// Distance of the farthest parent, metres.
+    farthest: f64,
+}
+
+fn avoidance(view: &View<'_>, desired: Vec2, parameters: &Parameters) -> Vec2 {
+    forces::obstacle(
+        desired,
+        view.proximity,
+        parameters.backbone_avoidance_range,
+        parameters.avoidance_gain,
+    )
+}
