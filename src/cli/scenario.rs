@@ -135,9 +135,11 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
         }
         None => simulate(&folder, &scenario, arguments)?,
     };
+    let control_period_s = scenario.control.period.get();
     print(
         &Finished {
             question: question(&text),
+            control_period_s,
             folder,
             summary,
             manifest,
@@ -166,6 +168,8 @@ impl ScenarioArguments {
 /// holds nothing, or finished trials of the same experiment.
 fn finished(folder: &Folder, scenario: &Scenario, force: bool) -> Result<Option<Manifest>, Failure> {
     let Contents::Results(there) = folder.contents()? else {
+        // Finished trials that nothing says the scenario of are of no use.
+        folder.drop_trials()?;
         return Ok(None);
     };
     if force {
@@ -251,6 +255,7 @@ fn failure(error: ExperimentError<TrialError>) -> Failure {
 /// Finished results, to be shown.
 struct Finished {
     question: Option<String>,
+    control_period_s: f64,
     folder: Folder,
     summary: Summary,
     manifest: Manifest,
@@ -272,6 +277,7 @@ fn text(finished: &Finished) -> String {
     report::terminal(&report::Input {
         question: finished.question.as_deref(),
         summary: &finished.summary,
+        control_period_s: finished.control_period_s,
         speed: Speed {
             simulated_s: trials.iter().map(|trial| trial.simulated_s).sum(),
             delivered: trials.iter().map(|trial| trial.delivered).sum(),

@@ -52,6 +52,16 @@ pub struct Experiment<'a> {
 }
 
 impl Experiment<'_> {
+    /// How many trials are kept by now.
+    #[must_use]
+    pub fn kept(&self) -> u32 {
+        self.trials - self.missing().len() as u32
+    }
+
+    fn missing(&self) -> Vec<u32> {
+        self.parts.missing(self.trials, self.seed)
+    }
+
     /// Runs those trials that are not kept yet, keeps each as soon as it has finished, and tells `finished` of it on
     /// the calling thread.
     ///
@@ -76,7 +86,7 @@ impl Experiment<'_> {
             tracing::info!(trial, wall_s = part.wall_s, steps = part.record.steps, "finished");
             Ok(part)
         };
-        let missing = self.parts.missing(self.trials, self.seed);
+        let missing = self.missing();
         run_trials(&missing, self.jobs, self.stop, run, |part| finished(&part))
     }
 }

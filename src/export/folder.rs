@@ -4,9 +4,11 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::Xxh3;
 
 use super::manifest::{FileEntry, Manifest};
+use crate::metrics::Summary;
 
 const MANIFEST: &str = "manifest.json";
 /// The summary's file.
@@ -42,10 +44,10 @@ pub enum FolderError {
         /// One of the files.
         found: String,
     },
-    /// Its manifest is not one.
-    #[error("{} is not a manifest that this version can read ({reason}): choose another folder with --out", path.display())]
+    /// Its manifest or its summary is not one.
+    #[error("{} is damaged, or of another version ({reason}): choose another folder with --out", path.display())]
     Unreadable {
-        /// The manifest.
+        /// The file.
         path: PathBuf,
         /// What is wrong.
         reason: String,
@@ -105,7 +107,7 @@ impl Folder {
             );
         }
         if names.iter().any(|name| name == MANIFEST) {
-            return self.manifest().map(Contents::Results);
+            return self.read(MANIFEST).map(Contents::Results);
         }
         match names.iter().filter(|&name| name != TRIALS).min() {
             None => Ok(Contents::Nothing),
@@ -183,17 +185,16 @@ impl Folder {
         fs::rename(self.trials().join(name), &path).map_err(failed("write", &path))
     }
 
-    /// The text of `summary.json`.
+    /// The summary of finished results.
     ///
     /// # Errors
     /// If it cannot be read.
-    pub fn summary(&self) -> Result<String, FolderError> {
-        let path = self.dir.join(SUMMARY);
-        fs::read_to_string(&path).map_err(failed("read", &path))
+    pub fn summary(&self) -> Result<Summary, FolderError> {
+        self.read(SUMMARY)
     }
 
-    fn manifest(&self) -> Result<Manifest, FolderError> {
-        let path = self.dir.join(MANIFEST);
+    fn read<T: DeserializeOwned>(&self, name: &str) -> Result<T, FolderError> {
+        let path = self.dir.join(name);
         let bytes = fs::read(&path).map_err(failed("read", &path))?;
         serde_json::from_slice(&bytes).map_err(|error| FolderError::Unreadable {
             path,

@@ -13,7 +13,7 @@ mod table;
 mod tables;
 mod write;
 
-pub use folder::{Contents, Folder, FolderError};
+pub use folder::{Contents, Folder, FolderError, json};
 pub use manifest::{FileEntry, Manifest, TrialEntry};
 pub use names::Names;
 pub use picture::Scene;

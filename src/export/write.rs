@@ -65,7 +65,7 @@ pub fn write(
         });
     }
     tables.finish().map_err(failed("write", parts.dir()))?;
-    let summary = Summary::new(&scenario.name, names.topics, &records);
+    let summary = Summary::of(&scenario.name, names.topics, names.roles, &records);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());
     for name in files {

@@ -10,14 +10,14 @@ pub use location::{mean, median, proportion};
 pub use spread::{gini, quantile};
 pub use survival::{Observation, median_survival};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Probability that an interval leaves out on either side.
 const TAIL: f64 = 0.025;
 
 /// An estimate from a number of trials. What the trials cannot tell is absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The point estimate.
     pub value: Option<f64>,

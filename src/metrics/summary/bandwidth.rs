@@ -1,15 +1,15 @@
 //! What robots send and receive. A robot's bandwidth in a trial is its bytes over the trial's control steps, in all of
 //! which it counts: topics and roles thus add up to the whole.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::metrics::record::{TrafficRow, TrialRecord, Volume};
 use crate::metrics::statistics::{Estimate, gini, mean, quantile};
 
-use super::quantity::{DIMENSIONLESS, Named, Quantity};
+use super::quantity::{DIMENSIONLESS, Named, Quantity, Unit};
 
 /// Bandwidth of robots.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bandwidth {
     /// On all topics, in all roles.
     #[serde(flatten)]
@@ -21,7 +21,7 @@ pub struct Bandwidth {
 }
 
 /// Bandwidth on one topic.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TopicBandwidth {
     /// Sent and received.
     #[serde(flatten)]
@@ -33,7 +33,7 @@ pub struct TopicBandwidth {
 }
 
 /// Bandwidth sent (tx) and received (rx), each with headers and as payload alone.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Directions {
     /// Sent, headers included; a broadcast counts once.
     pub tx_bytes_per_step: Spread,
@@ -46,7 +46,7 @@ pub struct Directions {
 }
 
 /// How a bandwidth spreads over robots and trials; absent without a robot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Least of any robot in any trial.
     pub min: Option<f64>,
@@ -59,18 +59,18 @@ pub struct Spread {
     /// Mean over trials of each trial's mean over robots.
     pub mean: Estimate,
     /// Always `"B/step"`.
-    pub unit: &'static str,
+    pub unit: Unit,
 }
 
 /// How unevenly robots share the load: the Gini coefficient of their bytes in a trial, 0 when all carry the same.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadImbalance {
     /// Of bytes sent, headers included: mean over trials.
     pub tx: Estimate,
     /// Of bytes received, headers included: mean over trials.
     pub rx: Estimate,
     /// Always `"1"`.
-    pub unit: &'static str,
+    pub unit: Unit,
 }
 
 impl Bandwidth {
@@ -101,7 +101,7 @@ impl TopicBandwidth {
             lost_bytes_per_step: Spread::of(records, |row| u64::from(is_its(row)) * lost_bytes(row)),
             header_share: Quantity {
                 value: (bytes > 0).then(|| headers as f64 / bytes as f64),
-                unit: DIMENSIONLESS,
+                unit: DIMENSIONLESS.into(),
             },
         }
     }
@@ -137,7 +137,7 @@ impl Spread {
             p95: quantile(&pooled, 0.95),
             max: pooled.last().copied(),
             mean: mean(&means),
-            unit: "B/step",
+            unit: "B/step".into(),
         }
     }
 }
@@ -154,7 +154,7 @@ impl LoadImbalance {
         Self {
             tx: over_trials(|row| row.sent.bytes()),
             rx: over_trials(|row| row.received.bytes()),
-            unit: DIMENSIONLESS,
+            unit: DIMENSIONLESS.into(),
         }
     }
 }

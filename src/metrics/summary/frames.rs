@@ -1,14 +1,14 @@
 //! What became of the frames.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::metrics::record::{TopicFates, TrialRecord};
 use crate::radio::LossCause;
 
-use super::quantity::Named;
+use super::quantity::{Named, Unit};
 
 /// Frames by fate over all trials, a copy for each intended receiver; offered = delivered + in flight + lost.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frames {
     /// Of all topics.
     #[serde(flatten)]
@@ -16,11 +16,11 @@ pub struct Frames {
     /// Of each topic.
     pub by_topic: Named<Fates>,
     /// Always `"frames"`.
-    pub unit: &'static str,
+    pub unit: Unit,
 }
 
 /// Copies of frames by fate.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fates {
     /// Offered to robots in range.
     pub offered: u64,
@@ -39,7 +39,7 @@ impl Frames {
         Self {
             total: Fates::of(all),
             by_topic: Named::of(topics.iter().copied(), of_topic),
-            unit: "frames",
+            unit: "frames".into(),
         }
     }
 }

@@ -8,9 +8,9 @@ mod quantity;
 
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
 pub use frames::{Fates, Frames};
-pub use quantity::{Measured, Named, Quantity};
+pub use quantity::{Measured, Named, Quantity, Unit};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::engine::Span;
@@ -24,7 +24,7 @@ const STEPS: &str = "control steps";
 const SECONDS: &str = "s";
 
 /// The figures of all trials of one scenario.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Name of the scenario.
     pub scenario: String,
@@ -61,16 +61,16 @@ pub struct Summary {
 }
 
 /// Control steps until a mission is complete.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepsToCompletion {
     /// The Kaplan–Meier median.
     pub median: Estimate,
     /// Always `"control steps"`.
-    pub unit: &'static str,
+    pub unit: Unit,
 }
 
 /// Time from the start of a transmission to its arrival; absent when nothing arrived.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Latency {
     /// Median over all delivered frames, within 1/256.
     pub p50: Option<f64>,
@@ -81,11 +81,11 @@ pub struct Latency {
     /// Mean over trials of each trial's mean.
     pub mean: Estimate,
     /// Always `"s"`.
-    pub unit: &'static str,
+    pub unit: Unit,
 }
 
 /// The least λ₂ of each trial.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeastConnectivity {
     /// Median over trials.
     #[serde(flatten)]
@@ -93,7 +93,7 @@ pub struct LeastConnectivity {
     /// Least over trials.
     pub min: Option<f64>,
     /// Always `"1"`.
-    pub unit: &'static str,
+    pub unit: Unit,
 }
 
 impl Summary {
@@ -125,15 +125,15 @@ impl Summary {
             connected_share: ratio(mean_over_trials(records, TrialRecord::connected_share)),
             robots_used: Measured {
                 estimate: mean_over_trials(records, |record| record.robots_used().map(|robots| robots as f64)),
-                unit: "robots",
+                unit: "robots".into(),
             },
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
-                unit: STEPS,
+                unit: STEPS.into(),
             },
             simulated_s: Quantity {
                 value: records.iter().map(|record| record.simulated.as_secs()).sum(),
-                unit: SECONDS,
+                unit: SECONDS.into(),
             },
         }
     }
@@ -142,7 +142,7 @@ impl Summary {
 fn ratio(estimate: Estimate) -> Measured {
     Measured {
         estimate,
-        unit: DIMENSIONLESS,
+        unit: DIMENSIONLESS.into(),
     }
 }
 
@@ -173,7 +173,7 @@ impl StepsToCompletion {
             .collect();
         Self {
             median: median_survival(&observations),
-            unit: STEPS,
+            unit: STEPS.into(),
         }
     }
 }
@@ -190,7 +190,7 @@ impl Latency {
             p95: quantile(0.95),
             p99: quantile(0.99),
             mean: mean_over_trials(records, |record| record.latency.mean_secs()),
-            unit: SECONDS,
+            unit: SECONDS.into(),
         }
     }
 }
@@ -201,7 +201,7 @@ impl LeastConnectivity {
         Self {
             estimate: median(&minima),
             min: minima.iter().copied().min_by(f64::total_cmp),
-            unit: DIMENSIONLESS,
+            unit: DIMENSIONLESS.into(),
         }
     }
 }
