@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::{CellAlignment, ContentLineStyle, LineStyle, Table, TableStyle};
 
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use crate::metrics::Summary;
@@ -59,11 +59,11 @@ pub fn terminal(input: &Input) -> String {
 
 fn outcome(page: &mut Page, input: &Input) {
     let summary = input.summary;
+    page.heading("Mission");
     let Some(share) = summary.completion_ratio.estimate.value else {
-        page.entry("Mission", "none: every trial ran to its time limit");
+        page.line("  none: every trial ran to its time limit");
         return;
     };
-    page.heading("Mission");
     let [low, high] = summary.completion_ratio.estimate.ci95.map(|end| end.map_or(NOTHING.into(), percent));
     let completed = format!(
         "{} of {} trials: {} [{low}, {high}]",
@@ -90,29 +90,31 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
     let bandwidth = &summary.bandwidth;
     page.heading("Bandwidth of a robot: bytes a control step, headers included");
     let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY).set_header(HEADER);
+    table.load_style(RULED).set_header(HEADER);
     for (name, topic) in &bandwidth.by_topic.0 {
         let TopicBandwidth { directions, lost_bytes_per_step, header_share } = topic;
         table.add_row(row(name, directions, &maybe(lost_bytes_per_step.median), &share(header_share)));
     }
     table.add_row(row("all topics", &bandwidth.total, "", ""));
-    let roles = &bandwidth.by_role.0;
-    for (name, directions) in roles.iter().filter(|_| roles.len() > 1) {
-        table.add_row(row(&format!("as {name}"), directions, "", ""));
-    }
     for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((u16::from(index > 0), 0));
+        column.set_padding((2, 0));
         column.set_cell_alignment(if index == 0 { CellAlignment::Left } else { CellAlignment::Right });
     }
     page.line(&table.trim_fmt());
+    page.line("");
     let mean = |spread: &Spread| estimate(&spread.mean, figure);
     let Directions { tx_bytes_per_step: sent, rx_bytes_per_step: received, .. } = &bandwidth.total;
     page.entry("mean", &format!("sent {}, received {}", mean(sent), mean(received)));
     let load = &summary.load_imbalance;
     let load = format!("sent {}, received {}", estimate(&load.tx, figure), estimate(&load.rx, figure));
-    page.entry("Gini", &format!("{load} (0: all robots carry the same)"));
+    page.entry("Gini of load", &format!("{load}; 0 where all carry the same"));
 }
 
+/// Columns apart, a rule under the header.
+const RULED: TableStyle = TableStyle::new()
+    .header_lines(ContentLineStyle::none())
+    .header_separator(LineStyle::none().fill('─'))
+    .content_lines(ContentLineStyle::none());
 const HEADER: [&str; 9] =
     ["", "sent\nleast", "\nmedian", "\nmost", "received\nleast", "\nmedian", "\nmost", "lost\nmedian", "headers\nin sent"];
 
@@ -156,6 +158,10 @@ fn radio(page: &mut Page, summary: &Summary) {
 fn connectivity(page: &mut Page, summary: &Summary) {
     page.heading("Connectivity");
     let lambda2 = &summary.lambda2_min;
+    if lambda2.min.is_none() {
+        page.line("  not sampled");
+        return;
+    }
     let least = format!("{} median of trials, {} at worst", estimate(&lambda2.estimate, figure), maybe(lambda2.min));
     page.entry("least λ₂", &least);
     let connected = estimate(&summary.connected_share.estimate, percent);
