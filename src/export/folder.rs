@@ -19,6 +19,8 @@ const TRIALS: &str = ".trials";
 #[derive(Clone, Debug)]
 pub struct Folder {
     dir: PathBuf,
+    /// The folder and those around it that were not there at first, from the inside out.
+    new: Vec<PathBuf>,
 }
 
 /// What is in a folder.
@@ -68,7 +70,9 @@ impl Folder {
     /// The folder at `dir`, which need not exist.
     #[must_use]
     pub fn new(dir: PathBuf) -> Self {
-        Self { dir }
+        let new = dir.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
+        let new = new.map(Path::to_owned).collect();
+        Self { dir, new }
     }
 
     /// Its path.
@@ -127,7 +131,7 @@ impl Folder {
         self.place(MANIFEST)
     }
 
-    /// Deletes what `manifest` says that desim put here, and the folder if nothing else is in it.
+    /// Deletes what `manifest` says that desim put here, and the folders that were not there before.
     ///
     /// # Errors
     /// If the file system refuses.
@@ -143,10 +147,9 @@ impl Folder {
             let path = self.dir.join(name);
             gone(fs::remove_file(&path)).map_err(failed("delete", &path))?;
         }
-        match fs::remove_dir(&self.dir) {
-            Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => Ok(()),
-            other => gone(other).map_err(failed("delete", &self.dir)),
-        }
+        // Whatever else has come into them meanwhile keeps them.
+        self.new.iter().take_while(|path| fs::remove_dir(path).is_ok()).for_each(drop);
+        Ok(())
     }
 
     /// Deletes the finished trials, which the tables hold by now.

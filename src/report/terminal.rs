@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::{CellAlignment, ContentLineStyle, LineStyle, Table, TableStyle};
 
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use crate::metrics::Summary;
@@ -62,16 +62,21 @@ pub fn terminal(input: &Input) -> String {
 
 fn outcome(page: &mut Page, input: &Input) {
     let summary = input.summary;
+    page.heading("Mission");
     let Some(share) = summary.completion_ratio.estimate.value else {
-        page.entry("Mission", "none: every trial ran to its time limit");
+        page.line("  none: every trial ran to its time limit");
         return;
     };
+<<<<<<< HEAD
     page.heading("Mission");
     let [low, high] = summary
         .completion_ratio
         .estimate
         .ci95
         .map(|end| end.map_or(NOTHING.into(), percent));
+=======
+    let [low, high] = summary.completion_ratio.estimate.ci95.map(|end| end.map_or(NOTHING.into(), percent));
+>>>>>>> results
     let completed = format!(
         "{} of {} trials: {} [{low}, {high}]",
         count(summary.completed),
@@ -104,7 +109,7 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
     let bandwidth = &summary.bandwidth;
     page.heading("Bandwidth of a robot: bytes a control step, headers included");
     let mut table = Table::new();
-    table.load_style(presets::UTF8_HORIZONTAL_ONLY).set_header(HEADER);
+    table.load_style(RULED).set_header(HEADER);
     for (name, topic) in &bandwidth.by_topic.0 {
         let TopicBandwidth {
             directions,
@@ -119,19 +124,21 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
         ));
     }
     table.add_row(row("all topics", &bandwidth.total, "", ""));
-    let roles = &bandwidth.by_role.0;
-    for (name, directions) in roles.iter().filter(|_| roles.len() > 1) {
-        table.add_row(row(&format!("as {name}"), directions, "", ""));
-    }
     for (index, column) in table.column_iter_mut().enumerate() {
+<<<<<<< HEAD
         column.set_padding((u16::from(index > 0), 0));
         column.set_cell_alignment(if index == 0 {
             CellAlignment::Left
         } else {
             CellAlignment::Right
         });
+=======
+        column.set_padding((2, 0));
+        column.set_cell_alignment(if index == 0 { CellAlignment::Left } else { CellAlignment::Right });
+>>>>>>> results
     }
     page.line(&table.trim_fmt());
+    page.line("");
     let mean = |spread: &Spread| estimate(&spread.mean, figure);
     let Directions {
         tx_bytes_per_step: sent,
@@ -140,6 +147,7 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
     } = &bandwidth.total;
     page.entry("mean", &format!("sent {}, received {}", mean(sent), mean(received)));
     let load = &summary.load_imbalance;
+<<<<<<< HEAD
     let load = format!(
         "sent {}, received {}",
         estimate(&load.tx, figure),
@@ -159,6 +167,19 @@ const HEADER: [&str; 9] = [
     "lost\nmedian",
     "headers\nin sent",
 ];
+=======
+    let load = format!("sent {}, received {}", estimate(&load.tx, figure), estimate(&load.rx, figure));
+    page.entry("Gini of load", &format!("{load}; 0 where all carry the same"));
+}
+
+/// Columns apart, a rule under the header.
+const RULED: TableStyle = TableStyle::new()
+    .header_lines(ContentLineStyle::none())
+    .header_separator(LineStyle::none().fill('─'))
+    .content_lines(ContentLineStyle::none());
+const HEADER: [&str; 9] =
+    ["", "sent\nleast", "\nmedian", "\nmost", "received\nleast", "\nmedian", "\nmost", "lost\nmedian", "headers\nin sent"];
+>>>>>>> results
 
 fn row(name: &str, directions: &Directions, lost: &str, header: &str) -> [String; 9] {
     let [a, b, c] = spread(&directions.tx_bytes_per_step);
@@ -216,11 +237,19 @@ fn radio(page: &mut Page, summary: &Summary) {
 fn connectivity(page: &mut Page, summary: &Summary) {
     page.heading("Connectivity");
     let lambda2 = &summary.lambda2_min;
+<<<<<<< HEAD
     let least = format!(
         "{} median of trials, {} at worst",
         estimate(&lambda2.estimate, figure),
         maybe(lambda2.min)
     );
+=======
+    if lambda2.min.is_none() {
+        page.line("  not sampled");
+        return;
+    }
+    let least = format!("{} median of trials, {} at worst", estimate(&lambda2.estimate, figure), maybe(lambda2.min));
+>>>>>>> results
     page.entry("least λ₂", &least);
     let connected = estimate(&summary.connected_share.estimate, percent);
     page.entry("in one piece", &format!("{connected} of the time"));

@@ -54,7 +54,7 @@ fn an_interrupted_experiment_goes_on_and_ends_with_the_same_bytes() {
     let (whole, halves) = (dir.path().join("whole"), dir.path().join("halves"));
     let expected = uninterrupted(&whole);
     interrupted(&halves);
-    assert!(results(&halves).is_empty() || !halves.join("summary.json").exists());
+    assert!(!halves.join("summary.json").exists());
 
     let ran = AtomicU32::new(0);
     let ending = run(&halves, &scenario(TRIALS), 3, &CancellationToken::new(), |trial| {

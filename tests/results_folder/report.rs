@@ -38,7 +38,7 @@ fn the_report_of_many_trials() {
 }
 
 #[test]
-fn the_report_of_one_trial_claims_no_interval() {
+fn the_report_of_one_trial() {
     insta::assert_snapshot!(report(&records(1), false));
 }
 

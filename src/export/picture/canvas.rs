@@ -13,6 +13,8 @@ const TOP: f64 = 62.0;
 const BOTTOM: f64 = 50.0;
 const LEGEND: f64 = 214.0;
 const LEGEND_LINE: f64 = 23.0;
+/// Height of the numbers beside marks, pixels.
+const LABEL: f64 = 8.5;
 const FONT: &str = "Helvetica, Arial, sans-serif";
 
 /// A sheet being drawn. Places are in metres from the arena's centre, y upwards; sizes of marks and text in pixels.
@@ -81,12 +83,13 @@ impl Canvas {
 
     /// Small text to the upper right of a place, readable over lines.
     pub fn label(&mut self, at: Vec2, words: &str) {
-        let at = self.pixel(at) + Vec2::new(5.0, -4.5);
-        let mut label = text(at, 8.0, "start", TEXT, words);
-        label.assign("stroke", "#ffffff");
-        label.assign("stroke-width", 2);
-        label.assign("paint-order", "stroke");
-        self.put(label);
+        let at = self.pixel(at) + Vec2::new(5.5, -5.0);
+        let mut halo = text(at, LABEL, "start", "#ffffff", words);
+        halo.assign("stroke", "#ffffff");
+        halo.assign("stroke-width", 2.4);
+        halo.assign("stroke-opacity", 0.8);
+        self.put(halo);
+        self.put(text(at, LABEL, "start", TEXT, words));
     }
 
     /// A line of the legend with a mark.
@@ -126,7 +129,7 @@ impl Canvas {
     }
 
     fn scale_bar(&mut self) {
-        let metres = tick_step(self.size.max()) / 2.0;
+        let metres = tick_step(self.size.max());
         self.legend_lines += 1;
         let from = self.legend_place() - Vec2::new(10.0, 0.0);
         let to = from + Vec2::new(metres * self.scale, 0.0);

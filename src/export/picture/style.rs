@@ -44,11 +44,15 @@ pub const AXIS: &str = "#4d4d4d";
 /// Text.
 pub const TEXT: &str = "#1a1a1a";
 /// Robots within range of each other.
+<<<<<<< HEAD
 pub const LINK: Stroke = Stroke {
     colour: "#5cb85c",
     width: 0.7,
     opacity: 0.55,
 };
+=======
+pub const LINK: Stroke = Stroke { colour: "#3fae49", width: 0.9, opacity: 0.6 };
+>>>>>>> results
 /// A place that a robot has to hold.
 pub const TARGET: Marker = Marker {
     shape: Shape::Target,
@@ -74,8 +78,8 @@ pub fn role(name: &str, index: usize) -> Marker {
     let (shape, colour, size) = match name {
         "root" => (Shape::Square, "#000000", 6.5),
         "worker" => (Shape::Triangle, "#d55e00", 7.0),
-        "networker" => (Shape::Disc, "#0072b2", 4.8),
-        "free" => (Shape::Ring, "#7f7f7f", 4.2),
+        "networker" => (Shape::Disc, "#0072b2", 5.2),
+        "free" => (Shape::Ring, "#6b6b6b", 4.4),
         _ => [
             (Shape::Disc, "#0072b2", 4.8),
             (Shape::Square, "#d55e00", 4.8),

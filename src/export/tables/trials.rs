@@ -20,6 +20,7 @@ pub struct Row {
     suspicions: u64,
     latency_min: Option<Span>,
     latency_max: Option<Span>,
+    latency_sum_ns: u128,
     digest: u128,
 }
 
@@ -39,6 +40,7 @@ pub fn row(record: &TrialRecord) -> Row {
         suspicions: record.suspicions,
         latency_min: record.latency.min(),
         latency_max: record.latency.max(),
+        latency_sum_ns: record.latency.sum_nanos(),
         digest: record.digest,
     }
 }
@@ -65,6 +67,7 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::i64("suspicions", |row| row.suspicions as i64),
         Col::optional_i64("latency_min_ns", |row| row.latency_min.map(nanos)),
         Col::optional_i64("latency_max_ns", |row| row.latency_max.map(nanos)),
+        Col::optional_i64("latency_sum_ns", |row| i64::try_from(row.latency_sum_ns).ok()),
         Col::text("digest", |row| format!("{:032x}", row.digest).into()),
     ]
 }
