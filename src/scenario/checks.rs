@@ -16,8 +16,8 @@ pub struct Problem {
     pub path: FieldPath,
     /// What is wrong.
     pub message: String,
-    /// What would be right.
-    pub help: String,
+    /// What would be right, where the message does not say so.
+    pub help: Option<String>,
     /// Other fields that it depends on.
     pub also: Vec<FieldPath>,
 }
@@ -27,7 +27,18 @@ impl Problem {
         Self {
             path: FieldPath::of(path),
             message: message.into(),
-            help: help.into(),
+            help: Some(help.into()),
+            also: Vec::new(),
+        }
+    }
+
+    /// A problem that a section found in itself, at a path relative to it.
+    fn of_section(section: &str, (path, message): (String, String)) -> Self {
+        let path = FieldPath::of(format!("{section}.{path}").trim_end_matches('.'));
+        Self {
+            message: format!("`{path}`: {message}"),
+            path,
+            help: None,
             also: Vec::new(),
         }
     }
@@ -53,7 +64,7 @@ pub fn problems(scenario: &Scenario) -> Vec<Problem> {
         found.extend(sizes(scenario));
     }
     found.extend(name(scenario));
-    found.extend(places(scenario));
+    found.extend(sections(scenario));
     found
 }
 
@@ -90,16 +101,33 @@ fn counts(scenario: &Scenario) -> Vec<Problem> {
     found
 }
 
-fn places(scenario: &Scenario) -> Option<Problem> {
-    let DeployConfig::At(places) = &scenario.swarm.deploy else {
-        return None;
+/// What each section finds wrong with itself.
+fn sections(scenario: &Scenario) -> Vec<Problem> {
+    let Scenario {
+        arena,
+        motion,
+        swarm,
+        radio,
+        ..
+    } = scenario;
+    let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
+    let protocol = match &scenario.protocol {
+        ProtocolConfig::Backbone(backbone) => backbone.problems(swarm.robots, radio.range.get()),
+        ProtocolConfig::Heartbeat => Vec::new(),
     };
-    let robots = scenario.swarm.robots;
-    (places.len() != robots as usize).then(|| {
-        let message = format!("places: {}, robots: {robots}", places.len());
-        let help = "list one place for each robot, or change `swarm.robots`";
-        Problem::new("swarm.deploy", message, help).with(&["swarm.robots"])
-    })
+    let around = ["swarm.robots", "arena.size", "motion.body_radius"];
+    let sections: [(_, _, &[&str]); 5] = [
+        ("arena", arena.problems(), &[]),
+        ("motion", motion.problems(), &[]),
+        ("radio", radio.problems(), &[]),
+        ("swarm.deploy", deploy, &around),
+        ("protocol", protocol, &["swarm.robots", "radio.range"]),
+    ];
+    let found = sections.into_iter().flat_map(|(section, problems, also)| {
+        let placed = move |problem| Problem::of_section(section, problem).with(also);
+        problems.into_iter().map(placed)
+    });
+    found.collect()
 }
 
 fn periods(scenario: &Scenario) -> Vec<Problem> {
@@ -176,7 +204,15 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
         0.0
     };
     let positions = robots * samples;
-    let copies = robots * neighbours(scenario);
+    let gossip = &scenario.gossip;
+    let intervals = [&gossip.status, &gossip.strand, &gossip.request].map(|topic| topic.interval.get());
+    let shortest = intervals
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
+        .max(scenario.control.period.get());
+    // Frames that a robot has in the air at once.
+    let overlap = 1.0 + scenario.radio.latency.mean().min(time_limit) / shortest;
+    let copies = robots * neighbours(scenario) * overlap;
     let bound = |path: &str, also: &[&str], what: &str, value: f64, most: f64, help: &str| {
         (value > most).then(|| {
             let message = format!("{value:.3e} {what}, more than the {most:.0e} that a trial may have");
@@ -210,11 +246,17 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
         ),
         bound(
             "radio.range",
-            &["swarm.robots", "swarm.deploy", "arena.size", "motion.body_radius"],
-            "copies of frames when every robot broadcasts once",
+            &[
+                "radio.latency",
+                "swarm.robots",
+                "swarm.deploy",
+                "arena.size",
+                "motion.body_radius",
+            ],
+            "copies of frames under way at once",
             copies,
             limits::COPIES,
-            "make `radio.range` shorter, or spread fewer robots over more room",
+            "make `radio.range` or `radio.latency` shorter, or spread fewer robots over more room",
         ),
     ]
     .into_iter()

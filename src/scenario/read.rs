@@ -264,7 +264,7 @@ fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
     };
     Finding {
         message: problem.message,
-        help: Some(problem.help),
+        help: problem.help,
         path: problem.path,
         span,
         label,
