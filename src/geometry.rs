@@ -2,16 +2,34 @@
 
 use std::f64::consts::{PI, TAU};
 
+use serde::{Deserialize, Serialize};
+
 /// A vector or a point in the plane, in metres (or metres per second where it is a velocity).
 pub type Vec2 = nalgebra::Vector2<f64>;
 
 /// Where a robot is and which way it faces.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "[f64; 3]", into = "[f64; 3]")]
 pub struct Pose {
     /// Position in the arena, metres from its centre.
     pub position: Vec2,
     /// Heading, radians in (−π, π].
     pub heading: f64,
+}
+
+impl From<[f64; 3]> for Pose {
+    fn from([x, y, heading]: [f64; 3]) -> Self {
+        Self {
+            position: Vec2::new(x, y),
+            heading,
+        }
+    }
+}
+
+impl From<Pose> for [f64; 3] {
+    fn from(pose: Pose) -> Self {
+        [pose.position.x, pose.position.y, pose.heading]
+    }
 }
 
 /// The angle equal to `angle` modulo a full turn, in (−π, π].

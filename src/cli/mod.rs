@@ -1,1 +1,99 @@
 //! The command line: the only place that prints and the only exit code.
+
+pub mod check;
+mod failure;
+mod interrupt;
+pub mod log;
+mod progress;
+pub mod scenario;
+pub mod schema;
+
+use std::io;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use failure::Failure;
+use scenario::ScenarioArguments;
+
+/// What the user asks for.
+#[derive(Debug, Parser)]
+#[command(name = "desim", version, about, long_about = LONG_ABOUT, after_help = EXIT_STATUS)]
+pub struct Cli {
+    /// The command.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const LONG_ABOUT: &str = "\
+Runs a robot swarm's protocol over a radio that loses and delays frames, often enough to say how sure the answer is: \
+what the protocol costs, when it finishes, and what breaks it.
+
+A scenario file holds one question. `desim scenario` answers it: a report on the terminal, tables, pictures and a \
+summary in a folder.";
+
+const EXIT_STATUS: &str = "\
+Exit status:
+  0    done
+  2    the input is wrong: one message, nothing written
+  1    anything else that went wrong
+  130  interrupted by Ctrl-C or SIGTERM; finished trials are kept
+
+Environment:
+  DESIM_LOG  what to log on stderr, such as `info` or `desim=debug`; nothing if unset
+  NO_COLOR   no colours on a terminal either";
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run the trials of a scenario and report what they show
+    #[command(long_about = scenario::LONG_ABOUT)]
+    Scenario(ScenarioArguments),
+    /// Say everything that is wrong with scenario files, without running them
+    ///
+    /// Each fault comes with its file, line and column, and with what would be right. Exit status 2 if there is any.
+    Check {
+        /// Scenario files (RON)
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+        /// Set a value of the scenarios, such as `radio.loss=Bernoulli(0.3)`; may be given many times
+        #[arg(long = "set", value_name = "PATH=VALUE")]
+        overrides: Vec<String>,
+        /// Print each scenario whole, with every default and override in it
+        #[arg(long)]
+        resolved: bool,
+    },
+    /// Print the JSON Schema of scenario files, for editors
+    Schema,
+}
+
+/// Runs a command.
+///
+/// # Errors
+/// Whatever keeps it from being done.
+pub fn run(command: Command) -> Result<(), Failure> {
+    let mut out = io::stdout();
+    match command {
+        Command::Scenario(arguments) => scenario::run(&arguments),
+        Command::Check {
+            files,
+            overrides,
+            resolved,
+        } => match check::check(&files, &overrides, resolved, &mut out)? {
+            true => Ok(()),
+            false => Err(Failure::Shown),
+        },
+        Command::Schema => Ok(schema::schema(&mut out)?),
+    }
+}
+
+/// Says on stderr what went wrong, if anything, and answers the exit status.
+#[must_use]
+pub fn exit(result: Result<(), Failure>) -> ExitCode {
+    let Err(failure) = result else { return ExitCode::SUCCESS };
+    if let Some(message) = failure.message() {
+        eprintln!("{message}");
+    }
+    failure.status().into()
+}

@@ -1,9 +1,11 @@
 //! The boundary between a run and the actors in it.
 
+use serde::{Deserialize, Serialize};
+
 use super::SimTime;
 
 /// Number of an actor in its run, counted from 0.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ActorId(pub u32);
 
 impl ActorId {

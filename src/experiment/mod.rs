@@ -1,1 +1,11 @@
-//! Trials of one scenario: in parallel, interruptible, resumable.
+//! Experiments: the trials of one scenario, run in parallel, each kept as soon as it has finished.
+//!
+//! An [`Experiment`] spreads trials over threads, a trial on one thread; what a trial gives depends on its number alone,
+//! so results do not depend on how many threads there were. [`Parts`] keeps finished trials on disk until all are
+//! there, so that an interrupted experiment is taken up where it stopped.
+
+mod parts;
+mod run;
+
+pub use parts::{FinishedTrial, Parts, PartsError};
+pub use run::{Ending, Experiment, ExperimentError};

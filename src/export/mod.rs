@@ -1,1 +1,21 @@
-//! Results as files: Parquet, JSON, SVG. Reads records only.
+//! What an experiment leaves on disk: tables, pictures, the summary, the manifest. Reads records only.
+//!
+//! [`write()`] fills a [`Folder`]; the folder's [`Manifest`] says what it is the result of. Every file but the manifest
+//! depends on the scenario, the seed and the version alone, byte for byte.
+
+mod folder;
+mod manifest;
+mod names;
+mod picture;
+#[cfg(feature = "parquet")]
+mod table;
+#[cfg_attr(not(feature = "parquet"), path = "no_tables.rs")]
+mod tables;
+mod write;
+
+pub use folder::{Contents, Folder, FolderError, json};
+pub use manifest::{FileEntry, Manifest, TrialEntry};
+pub use names::Names;
+pub use picture::Scene;
+pub use tables::Tables;
+pub use write::{Pictures, WriteError, write};

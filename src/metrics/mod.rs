@@ -1,9 +1,21 @@
 //! What a run leaves behind: traffic, fates, connectivity, outcome, and the statistics over trials.
 
 mod config;
+mod connectivity;
 mod latency;
+mod mission;
 mod record;
+mod recorder;
+mod reports;
+pub mod statistics;
+pub mod summary;
+mod traffic;
 
 pub use config::MetricsConfig;
+pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
+pub use mission::{Mission, MissionTarget, Progress};
 pub use record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord, Volume};
+pub use recorder::{Layout, Recorder, RunEnd};
+pub use statistics::Estimate;
+pub use summary::Summary;

@@ -1,5 +1,9 @@
 //! What a trial leaves behind: plain data, read by reports and exports, never by the simulation.
 
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Pose;
 use crate::radio::LossCause;
@@ -7,7 +11,7 @@ use crate::radio::LossCause;
 use super::latency::LatencyHistogram;
 
 /// Everything that one trial leaves behind.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrialRecord {
     /// Number of the trial, from 0.
     pub trial: u32,
@@ -31,6 +35,8 @@ pub struct TrialRecord {
     pub traffic: Vec<TrafficRow>,
     /// Time from the start of a transmission to its arrival, of all delivered frames.
     pub latency: LatencyHistogram,
+    /// Times that a robot came to believe that another was down.
+    pub suspicions: u64,
     /// Connectivity at each sample time.
     pub connectivity: Vec<ConnectivitySample>,
     /// Robots at the end, in order of ids.
@@ -39,8 +45,34 @@ pub struct TrialRecord {
     pub trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
 }
 
+impl TrialRecord {
+    /// The least λ₂ over the samples; `None` without a sample.
+    #[must_use]
+    pub fn lambda2_min(&self) -> Option<f64> {
+        self.connectivity
+            .iter()
+            .map(|sample| sample.lambda2)
+            .min_by(f64::total_cmp)
+    }
+
+    /// Share of the samples that find the swarm in one piece; `None` without a sample.
+    #[must_use]
+    pub fn connected_share(&self) -> Option<f64> {
+        let connected = self.connectivity.iter().filter(|sample| sample.components == 1).count();
+        (!self.connectivity.is_empty()).then(|| connected as f64 / self.connectivity.len() as f64)
+    }
+
+    /// Robots that ended in another role than the one that all start in: those that the mission took. `None` where
+    /// there is no mission.
+    #[must_use]
+    pub fn robots_used(&self) -> Option<usize> {
+        let used = || self.robots.iter().filter(|robot| robot.role != 0).count();
+        (self.outcome != Outcome::NoMission).then(used)
+    }
+}
+
 /// How a mission ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
     /// Every target was held with its links from this control step on, for the time that the scenario asks.
     Completed {
@@ -54,7 +86,7 @@ pub enum Outcome {
 }
 
 /// Frames of one topic by fate, counted a copy an intended receiver.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TopicFates {
     /// Copies that transmissions offered to robots in range.
     pub offered: u64,
@@ -66,8 +98,45 @@ pub struct TopicFates {
     pub in_flight: u64,
 }
 
+impl TopicFates {
+    /// Whether every copy offered has exactly one fate.
+    #[must_use]
+    pub fn is_balanced(&self) -> bool {
+        self.offered == self.delivered + self.lost.iter().sum::<u64>() + self.in_flight
+    }
+
+    /// Adds the frames of `other`.
+    pub fn add(&mut self, other: &Self) {
+        self.offered += other.offered;
+        self.delivered += other.delivered;
+        self.in_flight += other.in_flight;
+        for (mine, theirs) in self.lost.iter_mut().zip(&other.lost) {
+            *mine += theirs;
+        }
+    }
+}
+
+impl fmt::Display for TopicFates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let causes: Vec<String> = LossCause::ALL
+            .iter()
+            .zip(&self.lost)
+            .map(|(cause, frames)| format!("{} {frames}", cause.name()))
+            .collect();
+        let lost: u64 = self.lost.iter().sum();
+        write!(
+            f,
+            "offered {}, delivered {}, lost {lost} ({}), in flight {}",
+            self.offered,
+            self.delivered,
+            causes.join(", "),
+            self.in_flight
+        )
+    }
+}
+
 /// Frames and their bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Volume {
     /// Number of frames.
     pub frames: u64,
@@ -77,8 +146,16 @@ pub struct Volume {
     pub header_bytes: u64,
 }
 
+impl Volume {
+    /// All their bytes, headers included.
+    #[must_use]
+    pub fn bytes(self) -> u64 {
+        self.payload_bytes + self.header_bytes
+    }
+}
+
 /// Traffic of one robot while in one role, on one topic.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrafficRow {
     /// The robot.
     pub robot: ActorId,
@@ -95,7 +172,7 @@ pub struct TrafficRow {
 }
 
 /// The swarm's graph at one instant: robots within range of each other.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConnectivitySample {
     /// When.
     pub at: SimTime,
@@ -110,7 +187,7 @@ pub struct ConnectivitySample {
 }
 
 /// A robot at the end of a trial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RobotState {
     /// Where it is.
     pub pose: Pose,

@@ -30,16 +30,16 @@ impl Default for ArenaConfig {
 pub enum ObstacleConfig {
     /// A disc.
     Disc {
-        /// Its centre.
+        /// Its centre, within the arena.
         at: (Finite, Finite),
         /// Its radius in metres.
         radius: Positive,
     },
     /// A thin straight wall.
     Wall {
-        /// One end.
+        /// One end, within the arena.
         from: (Finite, Finite),
-        /// The other end.
+        /// The other end, within the arena and elsewhere than the first.
         to: (Finite, Finite),
     },
 }
@@ -48,32 +48,44 @@ pub enum ObstacleConfig {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum DeployConfig {
-    /// Robot 0 at the centre, the others uniform in a disc around it (paper section 4.1: a cluster).
+    /// Robot 0 at the arena's centre, the others uniform in a disc around it (paper section 4: a cluster). Headings are
+    /// uniform, here and below.
     Cluster {
-        /// Radius of the disc in metres.
+        /// Radius of the disc that holds the robots' centres, in metres. Random places fill up when bodies cover about
+        /// half of it: `1.4 · body_radius · √robots` is the least to ask for.
         radius: Positive,
     },
     /// Uniform over the arena.
     Uniform,
-    /// At these places, robot by robot, in metres from the centre.
+    /// At these places, one for each robot in order, in metres from the arena's centre.
     At(Vec<(Finite, Finite)>),
 }
 
-/// How robots move: a differential drive under PID control, in fixed ticks.
+/// How robots move: a differential drive under PID control (paper section 3.1, equation 1), in fixed ticks.
+///
+/// A protocol commands velocities. One controller turns the difference to the commanded speed, scaled down by the cosine
+/// of the heading error and to zero from 90° on, into an acceleration; another turns the heading error into a turning
+/// rate. Both drive a quantity that adds up what they put out, so a proportional gain p alone leaves no lasting error,
+/// each tick removes the share p·tick of what is left, and nothing overshoots while p·tick ≤ 1. Hence the defaults: no
+/// integral and no derivative part, and gains that settle within a second, quick against the seconds in which a protocol
+/// decides, and slow against the tick, as wheels are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MotionConfig {
-    /// Length of a motion tick in seconds; velocity is constant within it.
+    /// Length of a motion tick in seconds; velocity is constant within it. A command is taken up at the next tick.
     pub tick: Positive,
-    /// Largest linear speed in m/s. The paper does not state it: 0.03 is calibrated to its completion times.
+    /// Largest linear speed in m/s, below `body_radius / tick` (Khepera IV: 0.5 in use, 0.8 at most). The paper does not
+    /// state it: 0.03 is calibrated to its completion times.
     pub max_speed: Positive,
-    /// Largest turning rate in degrees per second.
+    /// Largest turning rate in degrees per second, less than half a turn in a tick. 180 takes wheels of 0.16 m/s at a
+    /// Khepera IV's axle of 0.105 m.
     pub max_turn_rate: Positive,
     /// Radius of a robot's body in metres (Khepera IV: 0.07).
     pub body_radius: Positive,
-    /// Control of the linear speed.
+    /// Control of the linear speed. Default: p = 5/s, half of the missing speed in each tick of 0.1 s.
     pub linear: PidConfig,
-    /// Control of the heading.
+    /// Control of the heading. Default: p = 4/s, 40 % of the error in each tick of 0.1 s; errors above 45° turn at the
+    /// largest rate.
     pub angular: PidConfig,
     /// How far the proximity sensors see, in metres from the body's edge.
     pub proximity_range: NonNegative,
@@ -86,29 +98,37 @@ impl Default for MotionConfig {
             max_speed: Positive::new(0.03),
             max_turn_rate: Positive::new(180.0),
             body_radius: Positive::new(0.07),
-            linear: PidConfig {
-                p: NonNegative::new(5.0),
-                i: NonNegative::new(0.0),
-                d: NonNegative::new(0.0),
-            },
-            angular: PidConfig {
-                p: NonNegative::new(4.0),
-                i: NonNegative::new(0.0),
-                d: NonNegative::new(0.0),
-            },
+            linear: PidConfig::proportional(5.0),
+            angular: PidConfig::proportional(4.0),
             proximity_range: NonNegative::new(0.25),
         }
     }
 }
 
-/// Gains of one PID controller.
+/// Gains of one PID controller. Together they must be stable at the tick: with `p` alone, `p · tick < 2`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PidConfig {
     /// Proportional gain, 1/s.
-    pub p: NonNegative,
-    /// Integral gain, 1/s².
+    pub p: Positive,
+    /// Integral gain, 1/s². Default 0.
+    #[serde(default = "none")]
     pub i: NonNegative,
-    /// Derivative gain, no unit.
+    /// Derivative gain, no unit, below 1. Default 0.
+    #[serde(default = "none")]
     pub d: NonNegative,
+}
+
+impl PidConfig {
+    fn proportional(p: f64) -> Self {
+        Self {
+            p: Positive::new(p),
+            i: none(),
+            d: none(),
+        }
+    }
+}
+
+fn none() -> NonNegative {
+    NonNegative::new(0.0)
 }

@@ -1,10 +1,35 @@
 //! The radio: who hears a transmission, when, and what becomes of each copy. A pure state machine.
+//!
+//! A [`Medium`] is told of a transmission and of the robots in range, and settles a [`Fate`] for each of them: the loss
+//! model says whether the copy survives, the latency model when it arrives, the sensing model where its receiver
+//! believes the sender to be. Receivers are independent of one another, and a late copy holds up no other.
+//!
+//! Every draw is keyed by purpose, sender, receiver and the sender's frame number, and each purpose has one uniform or
+//! one stream of its own a copy. So the fate of a copy depends neither on who else listens nor on the order in which
+//! listeners are named; the frames lost at 10 % are among those lost at 30 %; and a frame that survives under two loss
+//! settings has the same latency under both. A model that needs no randomness opens no stream.
+//!
+//! # Room for what is not here
+//! Propagation (path loss, shadowing) replaces the disk: [`Medium::range`] becomes the farthest distance at which a
+//! reception is possible, which is all that the run asks of it, and a copy below the receiver's sensitivity gets a
+//! [`LossCause`] of its own ahead of the loss model. Medium access (carrier sense, backoff, collisions, queues) needs
+//! transmissions that begin and end: [`Medium::transmit`] then enqueues, and the run hands the medium its own wake-ups
+//! back. Fates leave through the `receive` callback in both cases, because a fate need not be known when a frame is
+//! handed over; each new reason for a loss is one more [`LossCause`].
 
 mod config;
+mod draw;
+mod gilbert;
+mod latency;
+mod loss;
+mod medium;
+mod sensing;
 
 pub use config::{LatencyConfig, LossConfig, RadioConfig, SensingConfig};
+pub use medium::Medium;
 
 use crate::engine::{ActorId, SimTime};
+use crate::geometry::Vec2;
 
 /// Why a frame did not reach a receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -47,5 +72,5 @@ pub struct Listener {
     /// Who.
     pub id: ActorId,
     /// The sender's position relative to it at the time of transmission, metres, arena axes.
-    pub sender: crate::geometry::Vec2,
+    pub sender: Vec2,
 }

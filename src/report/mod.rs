@@ -1,1 +1,6 @@
-//! Results as text for a terminal. Reads summaries only.
+//! Finished results as text for people.
+
+mod number;
+mod terminal;
+
+pub use terminal::{Input, Speed, terminal};

@@ -1,4 +1,31 @@
 //! Scenario files: one file is one question. This module composes the configs of the parts; each part owns its own.
+//!
+//! A file is RON: comments, then `Scenario( ... )`. [`load`] and [`parse`] read it, with the overrides of the command
+//! line worked in, and answer a [`Scenario`] that holds, or a [`Report`] of everything that is wrong with it, each
+//! with its place. On the way from text to scenario: `token` and `tree` know what stands where, `overrides` and
+//! `source` work overrides into the text, `read` has serde make sense of it, `checks` finds what no field shows on its
+//! own, `explain` and `shape` say what would be right, `report` shows it.
+
+mod checks;
+mod explain;
+mod file;
+#[cfg(test)]
+mod generated;
+mod limits;
+mod lines;
+mod overrides;
+mod path;
+mod read;
+mod report;
+mod shape;
+mod source;
+mod token;
+mod tree;
+
+pub use file::{contents, json_schema, load, question, to_ron};
+pub use overrides::Override;
+pub use read::parse;
+pub use report::{Diagnostic, Place, Report, Style};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,8 +44,10 @@ use crate::radio::RadioConfig;
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     /// Name of the scenario; the default results folder is `results/<name>`. Letters, digits, `-` and `_`.
+    #[schemars(regex(pattern = r"^[A-Za-z0-9_-]{1,64}$"))]
     pub name: String,
     /// Number of trials, each with random streams of its own.
+    #[schemars(range(min = 1, max = limits::TRIALS))]
     #[serde(default = "one_trial")]
     pub trials: u32,
     /// Seed of every random stream.
@@ -65,7 +94,8 @@ fn first_seed() -> u64 {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SwarmConfig {
-    /// How many, from 1.
+    /// How many.
+    #[schemars(range(min = 1, max = limits::ROBOTS))]
     pub robots: u32,
     /// Where they start.
     pub deploy: DeployConfig,

@@ -1,0 +1,78 @@
+//! The same workload as a user would run it: the library's heartbeat protocol over its radio.
+
+use std::rc::Rc;
+
+use desim::engine::Span;
+use desim::geometry::Pose;
+use desim::metrics::MetricsConfig;
+use desim::motion::ArenaConfig;
+use desim::protocol::control::{ControlConfig, PhaseConfig};
+use desim::protocol::detector::DetectorConfig;
+use desim::protocol::gossip::GossipConfig;
+use desim::protocol::heartbeat::{Heartbeat, Settings};
+use desim::quantity::{NonNegative, Positive, Probability};
+use desim::radio::{LatencyConfig, LossConfig, RadioConfig};
+use desim::simulation::{DriverKind, Setup};
+use tokio_util::sync::CancellationToken;
+
+use crate::workload::{
+    Counts, LATENCY_MEAN_S, LATENCY_MIN_S, LATENCY_STD_DEV_S, LOSS_PROBABILITY, PERIOD_S, RANGE_M, SEED, TIMEOUT_S,
+    Workload,
+};
+
+pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
+    let setup = setup(workload);
+    let period = Span::from_secs(PERIOD_S);
+    let detector = DetectorConfig::Timeout(Positive::new(TIMEOUT_S));
+    let settings = Rc::new(Settings::new(&GossipConfig::default(), &detector, period));
+    let robots = workload
+        .places
+        .iter()
+        .map(|_| Heartbeat::new(Rc::clone(&settings)))
+        .collect();
+    let poses = workload
+        .places
+        .iter()
+        .map(|&position| Pose { position, heading: 0.0 })
+        .collect();
+    let record = setup
+        .run(poses, robots, driver, &CancellationToken::new())
+        .expect("the run reaches its end");
+    Counts {
+        deliveries: record.ledger.iter().map(|topic| topic.delivered).sum(),
+        suspicions: record.suspicions,
+    }
+}
+
+fn setup(workload: &Workload) -> Setup {
+    let side = Positive::new(workload.side_m);
+    Setup {
+        seed: SEED,
+        time_limit: Span::from_secs(workload.seconds),
+        arena: ArenaConfig {
+            size: (side, side),
+            ..ArenaConfig::default()
+        },
+        control: ControlConfig {
+            period: Positive::new(PERIOD_S),
+            phase: PhaseConfig::Random,
+            ..ControlConfig::default()
+        },
+        radio: RadioConfig {
+            range: Positive::new(RANGE_M),
+            loss: LossConfig::Bernoulli(Probability::new(LOSS_PROBABILITY)),
+            latency: LatencyConfig::Normal {
+                mean: NonNegative::new(LATENCY_MEAN_S),
+                std_dev: NonNegative::new(LATENCY_STD_DEV_S),
+                min: NonNegative::new(LATENCY_MIN_S),
+            },
+            ..RadioConfig::default()
+        },
+        // Connectivity is no part of the workload.
+        metrics: MetricsConfig {
+            sample_interval: NonNegative::new(0.0),
+            ..MetricsConfig::default()
+        },
+        ..Setup::default()
+    }
+}

@@ -1,0 +1,209 @@
+//! Trials spread over threads.
+
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Instant;
+
+use tokio_util::sync::CancellationToken;
+
+use super::parts::{FinishedTrial, Parts, PartsError};
+use crate::metrics::TrialRecord;
+
+/// How a set of trials ended, when none of them failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// Every trial ran to its end.
+    Finished,
+    /// Somebody cancelled; the trials that were under way are dropped.
+    Interrupted,
+}
+
+/// Why an experiment stopped before its end.
+#[derive(Debug, thiserror::Error)]
+pub enum ExperimentError<E: std::error::Error + 'static> {
+    /// A trial failed.
+    #[error("trial {trial}: {source}")]
+    Trial {
+        /// Its number.
+        trial: u32,
+        /// Why.
+        source: E,
+    },
+    /// A finished trial could not be kept.
+    #[error(transparent)]
+    Parts(#[from] PartsError),
+}
+
+/// The trials of one scenario.
+#[derive(Debug)]
+pub struct Experiment<'a> {
+    /// How many trials there are to be.
+    pub trials: u32,
+    /// Seed of them all.
+    pub seed: u64,
+    /// How many run at a time.
+    pub jobs: NonZeroUsize,
+    /// Where finished trials are kept.
+    pub parts: &'a Parts,
+    /// Cancelled when somebody wants the experiment to stop.
+    pub stop: &'a CancellationToken,
+}
+
+impl Experiment<'_> {
+    /// How many trials are kept by now.
+    #[must_use]
+    pub fn kept(&self) -> u32 {
+        self.trials - self.missing().len() as u32
+    }
+
+    fn missing(&self) -> Vec<u32> {
+        self.parts.missing(self.trials, self.seed)
+    }
+
+    /// Runs those trials that are not kept yet, keeps each as soon as it has finished, and tells `finished` of it on
+    /// the calling thread.
+    ///
+    /// `run` is called once a trial, on any thread; it should watch the token and give up early, with whatever error,
+    /// when that is cancelled. No trial starts then.
+    ///
+    /// # Errors
+    /// The first error, after which the other trials under way are dropped.
+    pub fn run<E: std::error::Error + Send + 'static>(
+        &self,
+        run: impl Fn(u32) -> Result<TrialRecord, E> + Sync,
+        mut finished: impl FnMut(&FinishedTrial),
+    ) -> Result<Ending, ExperimentError<E>> {
+        let run = |trial| {
+            let start = Instant::now();
+            let record = run(trial).map_err(|source| ExperimentError::Trial { trial, source })?;
+            let part = FinishedTrial {
+                wall_s: start.elapsed().as_secs_f64(),
+                record,
+            };
+            self.parts.save(&part)?;
+            tracing::info!(trial, wall_s = part.wall_s, steps = part.record.steps, "finished");
+            Ok(part)
+        };
+        let missing = self.missing();
+        run_trials(&missing, self.jobs, self.stop, run, |part| finished(&part))
+    }
+}
+
+/// Runs `trials` on `jobs` threads and hands what each leaves to `finished`, on the calling thread, in the order in
+/// which they finish. The first error cancels `stop`; errors after a cancellation are those of dropped trials.
+fn run_trials<T: Send, E: Send>(
+    trials: &[u32],
+    jobs: NonZeroUsize,
+    stop: &CancellationToken,
+    run: impl Fn(u32) -> Result<T, E> + Sync,
+    mut finished: impl FnMut(T),
+) -> Result<Ending, E> {
+    let next = AtomicUsize::new(0);
+    let (sender, receiver) = mpsc::channel();
+    thread::scope(|scope| {
+        for _ in 0..jobs.get().min(trials.len()) {
+            let sender = sender.clone();
+            scope.spawn(|| work(trials, &next, stop, &run, sender));
+        }
+        drop(sender);
+        let mut left = trials.len();
+        for result in receiver {
+            match result {
+                Ok(result) => {
+                    finished(result);
+                    left -= 1;
+                }
+                Err(_) if stop.is_cancelled() => {}
+                Err(error) => {
+                    stop.cancel();
+                    return Err(error);
+                }
+            }
+        }
+        Ok(if left == 0 {
+            Ending::Finished
+        } else {
+            Ending::Interrupted
+        })
+    })
+}
+
+/// Takes the next trial as long as there is one and nobody has cancelled.
+fn work<T, E>(
+    trials: &[u32],
+    next: &AtomicUsize,
+    stop: &CancellationToken,
+    run: &(impl Fn(u32) -> Result<T, E> + Sync),
+    results: mpsc::Sender<Result<T, E>>,
+) {
+    while !stop.is_cancelled() {
+        let Some(&trial) = trials.get(next.fetch_add(1, Ordering::Relaxed)) else {
+            return;
+        };
+        if results.send(run(trial)).is_err() {
+            return;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use std::sync::Mutex;
+
+    fn jobs(jobs: usize) -> NonZeroUsize {
+        NonZeroUsize::new(jobs).unwrap()
+    }
+
+    #[test]
+    fn every_trial_runs_once_however_many_threads_there_are() {
+        let trials: Vec<u32> = (0..50).collect();
+        for threads in [1, 3, 100] {
+            let mut seen = Vec::new();
+            let stop = CancellationToken::new();
+            let ending = run_trials(&trials, jobs(threads), &stop, Ok::<_, ()>, |trial| seen.push(trial));
+            seen.sort_unstable();
+            assert_eq!((ending, &seen), (Ok(Ending::Finished), &trials));
+        }
+    }
+
+    #[test]
+    fn no_trial_at_all_is_a_finished_experiment() {
+        let stop = CancellationToken::new();
+        assert_eq!(
+            run_trials(&[], jobs(2), &stop, Ok::<_, ()>, |_| ()),
+            Ok(Ending::Finished)
+        );
+    }
+
+    #[test]
+    fn the_first_error_comes_back_and_no_further_trial_starts() {
+        let started = Mutex::new(BTreeSet::new());
+        let run = |trial: u32| {
+            started.lock().unwrap().insert(trial);
+            if trial == 3 { Err("broken") } else { Ok(()) }
+        };
+        let trials: Vec<u32> = (0..1000).collect();
+        let stop = CancellationToken::new();
+        assert_eq!(run_trials(&trials, jobs(1), &stop, run, |()| ()), Err("broken"));
+        assert!(started.lock().unwrap().len() < 1000);
+    }
+
+    #[test]
+    fn after_a_cancellation_finished_trials_count_and_errors_do_not() {
+        let stop = CancellationToken::new();
+        let run = |trial: u32| {
+            if trial == 2 {
+                stop.cancel();
+                return Err("gave up because of the cancellation");
+            }
+            Ok(trial)
+        };
+        let mut seen = Vec::new();
+        let ending = run_trials(&[0, 1, 2, 3], jobs(1), &stop, run, |trial| seen.push(trial));
+        assert_eq!((ending, seen), (Ok(Ending::Interrupted), vec![0, 1]));
+    }
+}

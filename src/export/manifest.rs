@@ -1,0 +1,155 @@
+//! `manifest.json`: what a results folder is the result of, and what it took.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::scenario::Scenario;
+
+/// What `manifest.json` holds. The only file of a results folder that depends on the machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of desim.
+    pub version: String,
+    /// Commit that it was built from, where the build was told (environment variable `DESIM_COMMIT`).
+    pub commit: Option<String>,
+    /// Whether every trial has finished.
+    pub finished: bool,
+    /// The whole scenario, defaults and overrides worked in.
+    pub scenario: Value,
+    /// Seed of every random stream.
+    pub seed: u64,
+    /// What ran: empty until all trials have finished.
+    pub trials: Vec<TrialEntry>,
+    /// The other files, by name.
+    pub files: BTreeMap<String, FileEntry>,
+}
+
+/// One trial in the manifest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrialEntry {
+    /// Its number.
+    pub trial: u32,
+    /// Digest of its events, 32 hexadecimal digits.
+    pub digest: String,
+    /// Simulated seconds.
+    pub simulated_s: f64,
+    /// Copies of frames that were delivered.
+    pub delivered: u64,
+    /// Wall time that its thread spent on it, seconds.
+    pub wall_s: f64,
+}
+
+/// One file in the manifest.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileEntry {
+    /// Its length.
+    pub bytes: u64,
+    /// Its XXH3 hash of 128 bits, 32 hexadecimal digits.
+    pub xxh3_128: String,
+}
+
+impl Manifest {
+    /// The manifest of an experiment that has just begun.
+    ///
+    /// # Panics
+    /// Never: a scenario holds only what JSON can write.
+    #[must_use]
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: option_env!("DESIM_COMMIT").map(str::to_owned),
+            finished: false,
+            scenario: serde_json::to_value(scenario).expect("a scenario holds only what JSON can write"),
+            seed: scenario.seed,
+            trials: Vec::new(),
+            files: BTreeMap::new(),
+        }
+    }
+
+    /// What keeps results of `self` from being results of `asked`, a line each: version and scenario, field by field.
+    /// While `self` is unfinished, the number of trials may be another one: finished trials stay good.
+    #[must_use]
+    pub fn differences(&self, asked: &Self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if self.version != asked.version {
+            lines.push(format!("desim {} there, {} now", self.version, asked.version));
+        }
+        compare("", &self.scenario, &asked.scenario, &mut lines);
+        if !self.finished {
+            lines.retain(|line| !line.starts_with("trials: "));
+        }
+        lines
+    }
+}
+
+/// Adds a line for each value that differs between `there` and `now`.
+fn compare(path: &str, there: &Value, now: &Value, lines: &mut Vec<String>) {
+    match (there, now) {
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
+            for ((key, there), now) in a.iter().zip(b.values()) {
+                let path = if path.is_empty() {
+                    key.clone()
+                } else {
+                    format!("{path}.{key}")
+                };
+                compare(&path, there, now, lines);
+            }
+        }
+        _ if there != now => lines.push(format!("{path}: {there} there, {now} now")),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn manifest(finished: bool, scenario: Value) -> Manifest {
+        Manifest {
+            version: "1".into(),
+            commit: None,
+            finished,
+            scenario,
+            seed: 1,
+            trials: Vec::new(),
+            files: BTreeMap::new(),
+        }
+    }
+
+    #[test]
+    fn a_difference_names_the_field_and_both_values() {
+        let there = manifest(
+            true,
+            json!({"trials": 3, "radio": {"range": 2.0, "loss": {"Bernoulli": 0.1}}}),
+        );
+        let now = manifest(false, json!({"trials": 3, "radio": {"range": 2.0, "loss": "None"}}));
+        assert_eq!(
+            there.differences(&now),
+            [r#"radio.loss: {"Bernoulli":0.1} there, "None" now"#]
+        );
+    }
+
+    #[test]
+    fn only_an_unfinished_result_takes_another_number_of_trials() {
+        let (few, many) = (json!({"trials": 3}), json!({"trials": 5}));
+        assert!(
+            manifest(false, few.clone())
+                .differences(&manifest(false, many.clone()))
+                .is_empty()
+        );
+        assert_eq!(
+            manifest(true, few).differences(&manifest(false, many)),
+            ["trials: 3 there, 5 now"]
+        );
+    }
+
+    #[test]
+    fn another_version_is_a_difference() {
+        let mut other = manifest(false, json!({}));
+        other.version = "2".into();
+        assert_eq!(manifest(true, json!({})).differences(&other), ["desim 1 there, 2 now"]);
+    }
+}

@@ -1,0 +1,91 @@
+//! Where the robots of a trial ended, as the paper's figure 2 shows it.
+
+use svg::Document;
+
+use super::canvas::Canvas;
+use super::style::{self, LINK, TARGET};
+use super::{Scene, obstacles, subtitle};
+use crate::geometry::Vec2;
+use crate::metrics::{RobotState, TrialRecord};
+
+/// Above this many robots their numbers would hide them.
+const MOST_LABELS: usize = 200;
+
+/// Draws from the back to the front: obstacles, links, chains, targets, robots, numbers.
+pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
+    let size = Vec2::new(scene.arena.size.0.get(), scene.arena.size.1.get());
+    let mut canvas = Canvas::new(size, &scene.name, &subtitle(record));
+    let robots = &record.robots;
+    obstacles(&mut canvas, &scene.arena.obstacles);
+    canvas.lines(links(robots, scene.range), LINK);
+    let targets = worked_for(robots);
+    for &target in &targets {
+        canvas.lines(chain(robots, target), style::chain(target.into()));
+    }
+    scene.targets.iter().for_each(|&target| canvas.mark(target, TARGET));
+    for robot in robots {
+        canvas.mark(
+            robot.pose.position,
+            style::role(scene.role(robot.role), robot.role.into()),
+        );
+    }
+    if robots.len() <= MOST_LABELS {
+        for (number, robot) in robots.iter().enumerate() {
+            canvas.label(robot.pose.position, &number.to_string());
+        }
+    }
+    legend(&mut canvas, scene, robots, &targets);
+    canvas.finish()
+}
+
+fn legend(canvas: &mut Canvas, scene: &Scene, robots: &[RobotState], targets: &[u16]) {
+    for (number, name) in scene.roles.iter().enumerate() {
+        let count = robots.iter().filter(|robot| usize::from(robot.role) == number).count();
+        if count > 0 {
+            canvas.legend_mark(style::role(name, number), &format!("{name} ({count})"));
+        }
+    }
+    if !scene.targets.is_empty() {
+        canvas.legend_mark(
+            style::Marker {
+                size: TARGET.size * 0.7,
+                ..TARGET
+            },
+            "target",
+        );
+    }
+    canvas.legend_stroke(LINK, &format!("within range ({} m)", scene.range));
+    for &target in targets {
+        canvas.legend_stroke(style::chain(target.into()), &format!("chain to target {target}"));
+    }
+}
+
+/// Pairs of robots within `range` of each other.
+fn links(robots: &[RobotState], range: f64) -> impl Iterator<Item = (Vec2, Vec2)> {
+    robots.iter().enumerate().flat_map(move |(index, robot)| {
+        let from = robot.pose.position;
+        let others = robots[index + 1..].iter().map(|other| other.pose.position);
+        others
+            .filter(move |to| (to - from).norm() <= range)
+            .map(move |to| (from, to))
+    })
+}
+
+/// The targets that some robot works for, in order.
+fn worked_for(robots: &[RobotState]) -> Vec<u16> {
+    let mut targets: Vec<_> = robots.iter().filter_map(|robot| robot.target).collect();
+    targets.sort_unstable();
+    targets.dedup();
+    targets
+}
+
+/// From each robot of a target's chains to the robots that it relies on.
+fn chain(robots: &[RobotState], target: u16) -> impl Iterator<Item = (Vec2, Vec2)> {
+    robots
+        .iter()
+        .filter(move |robot| robot.target == Some(target))
+        .flat_map(move |robot| {
+            let parents = robot.parents.iter().filter_map(|parent| robots.get(parent.index()));
+            parents.map(|parent| (robot.pose.position, parent.pose.position))
+        })
+}

@@ -1,0 +1,80 @@
+//! Pictures of a trial as SVG: where its robots ended, and how they got there.
+
+mod canvas;
+mod final_state;
+mod shapes;
+mod style;
+mod trajectories;
+
+use svg::Document;
+
+use crate::geometry::Vec2;
+use crate::metrics::{Outcome, TrialRecord};
+use crate::motion::{ArenaConfig, ObstacleConfig};
+
+/// What stands still in every picture of a scenario.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name of the scenario, for titles.
+    pub name: String,
+    /// The arena and its obstacles.
+    pub arena: ArenaConfig,
+    /// Communication range, metres.
+    pub range: f64,
+    /// Places of the mission's targets, metres from the centre.
+    pub targets: Vec<Vec2>,
+    /// Names of the roles, in the order of their numbers.
+    pub roles: &'static [&'static str],
+}
+
+impl Scene {
+    /// Where the robots of `record` ended: by role, with the links within range (as in the paper's figure 2) and the
+    /// chains to each target.
+    #[must_use]
+    pub fn final_state(&self, record: &TrialRecord) -> Document {
+        final_state::draw(self, record)
+    }
+
+    /// The paths of the robots of `record`, by their roles at the end.
+    #[must_use]
+    pub fn trajectories(&self, record: &TrialRecord) -> Document {
+        trajectories::draw(self, record)
+    }
+
+    /// Name of a role.
+    fn role(&self, number: u8) -> &'static str {
+        self.roles.get(usize::from(number)).copied().unwrap_or("unknown")
+    }
+}
+
+/// One line on which trial this is and how it ended.
+fn subtitle(record: &TrialRecord) -> String {
+    let (trial, period) = (record.trial, record.control_period.as_secs());
+    match record.outcome {
+        Outcome::Completed { step } => {
+            format!("trial {trial}: completed at step {step}, {:.1} s", step as f64 * period)
+        }
+        Outcome::Censored => format!("trial {trial}: not completed in {:.1} s", record.simulated.as_secs()),
+        Outcome::NoMission => format!("trial {trial}: after {:.1} s", record.simulated.as_secs()),
+    }
+}
+
+/// Draws the obstacles.
+fn obstacles(canvas: &mut canvas::Canvas, obstacles: &[ObstacleConfig]) {
+    for obstacle in obstacles {
+        match obstacle {
+            ObstacleConfig::Disc { at, radius } => {
+                canvas.disc(Vec2::new(at.0.get(), at.1.get()), radius.get(), style::OBSTACLE);
+            }
+            ObstacleConfig::Wall { from, to } => canvas.line(
+                Vec2::new(from.0.get(), from.1.get()),
+                Vec2::new(to.0.get(), to.1.get()),
+                style::Stroke {
+                    colour: style::OBSTACLE,
+                    width: 3.0,
+                    opacity: 1.0,
+                },
+            ),
+        }
+    }
+}

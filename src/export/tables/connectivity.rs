@@ -1,0 +1,46 @@
+//! `connectivity.parquet`: a row for trial × sample time.
+
+use super::super::Names;
+use super::super::table::Column;
+use crate::metrics::{ConnectivitySample, TrialRecord};
+
+/// The swarm's graph at one instant of one trial.
+pub struct Row {
+    trial: u32,
+    sample: ConnectivitySample,
+}
+
+pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
+    let samples = record.connectivity.iter();
+    samples.map(|sample| Row {
+        trial: record.trial,
+        sample: sample.clone(),
+    })
+}
+
+type Col = Column<Row>;
+
+/// One column a role and one a target: `robots_<role>`, `links_<target>`.
+pub fn columns(names: &Names, targets: usize) -> Vec<Column<Row>> {
+    let mut columns = vec![
+        Col::i32("trial", |row| row.trial as i32),
+        Col::f64("time_s", |row| row.sample.at.as_secs()),
+        Col::f64("lambda2", |row| row.sample.lambda2),
+        Col::i32("components", |row| row.sample.components as i32),
+    ];
+    columns.extend(
+        names
+            .roles
+            .iter()
+            .enumerate()
+            .map(|(index, role)| Col::optional_i32(format!("robots_{role}"), move |row| at(&row.sample.roles, index))),
+    );
+    columns.extend(
+        (0..targets).map(|index| Col::optional_i32(format!("links_{index}"), move |row| at(&row.sample.links, index))),
+    );
+    columns
+}
+
+fn at(counts: &[u32], index: usize) -> Option<i32> {
+    counts.get(index).map(|&count| count as i32)
+}

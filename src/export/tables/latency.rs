@@ -1,0 +1,33 @@
+//! `latency.parquet`: a row for trial × bucket of the latency histogram that holds something.
+
+use super::super::table::Column;
+use crate::metrics::TrialRecord;
+
+/// Delivered copies of one trial whose latency lies between two bounds.
+pub struct Row {
+    trial: u32,
+    low_ns: u64,
+    high_ns: u64,
+    count: u64,
+}
+
+pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
+    let buckets = record.latency.buckets();
+    buckets.map(|(low_ns, high_ns, count)| Row {
+        trial: record.trial,
+        low_ns,
+        high_ns,
+        count,
+    })
+}
+
+type Col = Column<Row>;
+
+pub fn columns() -> Vec<Column<Row>> {
+    vec![
+        Col::i32("trial", |row| row.trial as i32),
+        Col::i64("low_ns", |row| row.low_ns as i64),
+        Col::i64("high_ns", |row| row.high_ns as i64),
+        Col::i64("count", |row| row.count as i64),
+    ]
+}

@@ -1,0 +1,87 @@
+//! The tables of a results folder, filled a trial at a time, in order of trials.
+
+mod bandwidth;
+mod connectivity;
+mod frames;
+mod latency;
+mod robots;
+mod trajectories;
+mod trials;
+
+use std::io;
+use std::path::Path;
+
+use super::Names;
+use super::table::Table;
+use crate::metrics::TrialRecord;
+
+/// The tables of a results folder being written.
+pub struct Tables {
+    names: Names,
+    trials: Table<trials::Row>,
+    frames: Table<frames::Row>,
+    bandwidth: Table<bandwidth::Row>,
+    latency: Table<latency::Row>,
+    connectivity: Table<connectivity::Row>,
+    robots: Table<robots::Row>,
+    trajectories: Table<trajectories::Row>,
+}
+
+impl Tables {
+    /// Names of the files.
+    pub const FILES: [&str; 7] = [
+        "trials.parquet",
+        "frames.parquet",
+        "bandwidth.parquet",
+        "latency.parquet",
+        "connectivity.parquet",
+        "robots.parquet",
+        "trajectories.parquet",
+    ];
+
+    /// Starts the tables in folder `dir`, for a mission with `targets` targets.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn create(dir: &Path, names: Names, targets: usize) -> io::Result<Self> {
+        let path = |index: usize| dir.join(Self::FILES[index]);
+        Ok(Self {
+            names,
+            trials: Table::create(&path(0), trials::columns())?,
+            frames: Table::create(&path(1), frames::columns())?,
+            bandwidth: Table::create(&path(2), bandwidth::columns())?,
+            latency: Table::create(&path(3), latency::columns())?,
+            connectivity: Table::create(&path(4), connectivity::columns(&names, targets))?,
+            robots: Table::create(&path(5), robots::columns())?,
+            trajectories: Table::create(&path(6), trajectories::columns())?,
+        })
+    }
+
+    /// Adds a trial's rows to every table.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn append(&mut self, record: &TrialRecord) -> io::Result<()> {
+        self.trials.extend([trials::row(record)])?;
+        self.frames.extend(frames::rows(record, &self.names))?;
+        self.bandwidth.extend(bandwidth::rows(record, &self.names))?;
+        self.latency.extend(latency::rows(record))?;
+        self.connectivity.extend(connectivity::rows(record))?;
+        self.robots.extend(robots::rows(record, &self.names))?;
+        self.trajectories.extend(trajectories::rows(record))
+    }
+
+    /// Ends every file.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn finish(self) -> io::Result<()> {
+        self.trials.finish()?;
+        self.frames.finish()?;
+        self.bandwidth.finish()?;
+        self.latency.finish()?;
+        self.connectivity.finish()?;
+        self.robots.finish()?;
+        self.trajectories.finish()
+    }
+}

@@ -1,0 +1,124 @@
+//! From the finished trials of an experiment to its results folder.
+
+use super::folder::{Folder, FolderError, SUMMARY, failed, json};
+use super::manifest::{Manifest, TrialEntry};
+use super::names::Names;
+use super::picture::Scene;
+use super::tables::Tables;
+use crate::experiment::{FinishedTrial, Parts, PartsError};
+use crate::metrics::{Summary, TrialRecord};
+use crate::scenario::{ProtocolConfig, Scenario};
+
+/// Of which trials to draw pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pictures {
+    /// Of none.
+    None,
+    /// Of the first.
+    #[default]
+    First,
+    /// Of all.
+    All,
+}
+
+/// Results could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// A finished trial cannot be read back.
+    #[error(transparent)]
+    Parts(#[from] PartsError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+}
+
+/// Writes the results of `scenario`, all of whose trials are in `parts`, to `folder`: one trial at a time, in order,
+/// every file whole before it is put in its place, the manifest last. Then the parts go.
+///
+/// # Errors
+/// If a trial cannot be read or a file not be written; the parts then stay.
+pub fn write(
+    folder: &Folder,
+    parts: Parts,
+    scenario: &Scenario,
+    pictures: Pictures,
+) -> Result<(Summary, Manifest), WriteError> {
+    let (names, scene) = (names(scenario), scene(scenario));
+    let mut manifest = Manifest {
+        finished: true,
+        ..Manifest::new(scenario)
+    };
+    let mut files: Vec<String> = Tables::FILES.map(str::to_owned).into();
+    let mut tables = Tables::create(parts.dir(), names, scene.targets.len()).map_err(failed("write", parts.dir()))?;
+    let mut records = Vec::new();
+    for trial in 0..scenario.trials {
+        let part = parts.load(trial)?;
+        tables.append(&part.record).map_err(failed("write", parts.dir()))?;
+        if pictures == Pictures::All || (pictures == Pictures::First && trial == 0) {
+            files.extend(draw(folder, &scene, &part.record)?);
+        }
+        manifest.trials.push(entry(&part));
+        // Paths are the bulk of a record, and the summary has no use for them.
+        records.push(TrialRecord {
+            trajectories: Vec::new(),
+            ..part.record
+        });
+    }
+    tables.finish().map_err(failed("write", parts.dir()))?;
+    let summary = Summary::of(&scenario.name, names.topics, names.roles, &records);
+    folder.stage(SUMMARY, &json(&summary))?;
+    files.push(SUMMARY.to_owned());
+    for name in files {
+        let measured = folder.measure(&name)?;
+        folder.place(&name)?;
+        manifest.files.insert(name, measured);
+    }
+    folder.declare(&manifest)?;
+    drop(parts);
+    folder.drop_trials()?;
+    Ok((summary, manifest))
+}
+
+/// Draws a trial and answers the names of the files.
+fn draw(folder: &Folder, scene: &Scene, record: &TrialRecord) -> Result<[String; 2], FolderError> {
+    let names = ["final", "trajectories"].map(|name| format!("{name}_{}.svg", record.trial));
+    for (name, picture) in names
+        .iter()
+        .zip([scene.final_state(record), scene.trajectories(record)])
+    {
+        folder.stage(name, format!("{picture}\n").as_bytes())?;
+    }
+    Ok(names)
+}
+
+fn entry(part: &FinishedTrial) -> TrialEntry {
+    TrialEntry {
+        trial: part.record.trial,
+        digest: format!("{:032x}", part.record.digest),
+        simulated_s: part.record.simulated.as_secs(),
+        delivered: part.record.ledger.iter().map(|fates| fates.delivered).sum(),
+        wall_s: part.wall_s,
+    }
+}
+
+/// What the scenario's protocol calls its topics and roles.
+fn names(scenario: &Scenario) -> Names {
+    match &scenario.protocol {
+        ProtocolConfig::Backbone(_) => Names::of::<crate::protocol::backbone::Backbone>(),
+        ProtocolConfig::Heartbeat => Names::of::<crate::protocol::heartbeat::Heartbeat>(),
+    }
+}
+
+/// What stands still in the scenario's pictures.
+fn scene(scenario: &Scenario) -> Scene {
+    Scene {
+        name: scenario.name.clone(),
+        arena: scenario.arena.clone(),
+        range: scenario.radio.range.get(),
+        targets: match &scenario.protocol {
+            ProtocolConfig::Backbone(config) => config.targets().into_iter().map(|(place, _)| place).collect(),
+            ProtocolConfig::Heartbeat => Vec::new(),
+        },
+        roles: names(scenario).roles,
+    }
+}

@@ -1,0 +1,378 @@
+//! The recorder: told of everything that happens in a run, it leaves a [`TrialRecord`].
+
+use crate::engine::{ActorId, SimTime, Span};
+use crate::geometry::{Pose, Vec2};
+use crate::protocol::{Note, Topic};
+use crate::radio::LossCause;
+
+use super::config::MetricsConfig;
+use super::connectivity::Graph;
+use super::latency::LatencyHistogram;
+use super::mission::{Judge, Mission, Progress, Scene};
+use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
+use super::reports::Reports;
+use super::traffic::Traffic;
+
+/// The shape of a run, known before it starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// Number of robots.
+    pub robots: usize,
+    /// Number of topics of the protocol.
+    pub topics: usize,
+    /// Number of roles of the protocol.
+    pub roles: usize,
+    /// Bytes that every frame carries beside its payload.
+    pub header_bytes: u16,
+    /// C, the radio's range, metres.
+    pub radio_range: f64,
+    /// Length of a control step.
+    pub control_period: Span,
+    /// What the swarm is asked to do, if anything.
+    pub mission: Option<Mission>,
+}
+
+/// What only the hub knows when a run is over.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunEnd {
+    /// Number of the trial, from 0.
+    pub trial: u32,
+    /// Seed of the experiment.
+    pub seed: u64,
+    /// Control steps simulated.
+    pub steps: u64,
+    /// Simulated time at the end.
+    pub simulated: SimTime,
+    /// Events handled.
+    pub events: u64,
+    /// Digest of every event, in order.
+    pub digest: u128,
+    /// Where every robot is, in order of ids.
+    pub poses: Vec<Pose>,
+}
+
+/// Accounts for one run.
+#[derive(Debug)]
+pub struct Recorder {
+    roles: usize,
+    radio_range: f64,
+    control_period: Span,
+    traffic: Traffic,
+    latency: LatencyHistogram,
+    /// Copies offered, by topic: counted at the transmission, so that the fates can be checked against it.
+    offered: Vec<u64>,
+    in_flight: Vec<u64>,
+    reports: Reports,
+    suspicions: u64,
+    judge: Option<Judge>,
+    connectivity: Vec<ConnectivitySample>,
+    trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
+    /// The last sample's graph and its λ₂, which stands as long as no edge changes.
+    last_graph: Option<(Graph, f64)>,
+}
+
+impl Recorder {
+    /// A recorder for a run of this shape, before its start.
+    #[must_use]
+    pub fn new(layout: Layout, config: &MetricsConfig) -> Self {
+        let hold = Span::from_secs(config.hold.get());
+        Self {
+            roles: layout.roles,
+            radio_range: layout.radio_range,
+            control_period: layout.control_period,
+            traffic: Traffic::new(layout.robots, layout.roles, layout.topics, layout.header_bytes),
+            latency: LatencyHistogram::default(),
+            offered: vec![0; layout.topics],
+            in_flight: vec![0; layout.topics],
+            reports: Reports::new(layout.robots),
+            suspicions: 0,
+            judge: layout
+                .mission
+                .map(|mission| Judge::new(mission, hold, layout.control_period)),
+            connectivity: Vec::new(),
+            trajectories: Vec::new(),
+            last_graph: None,
+        }
+    }
+
+    /// `sender` transmitted a frame, however many robots hear it.
+    #[inline]
+    pub fn transmitted(&mut self, sender: ActorId, topic: Topic, payload_bytes: u32) {
+        self.traffic.sent(sender, topic, payload_bytes);
+    }
+
+    /// A transmission was offered to `copies` robots in range. Each copy's fate is told in its own time.
+    #[inline]
+    pub fn offered(&mut self, topic: Topic, copies: u64) {
+        self.offered[usize::from(topic.0)] += copies;
+    }
+
+    /// A copy meant for `receiver` was lost.
+    #[inline]
+    pub fn lost(&mut self, receiver: ActorId, topic: Topic, cause: LossCause, payload_bytes: u32) {
+        self.traffic.lost(receiver, topic, cause, payload_bytes);
+    }
+
+    /// A copy arrived at `receiver`, `latency` after its transmission began.
+    #[inline]
+    pub fn delivered(&mut self, receiver: ActorId, topic: Topic, payload_bytes: u32, latency: Span) {
+        self.traffic.received(receiver, topic, payload_bytes);
+        self.latency.record(latency);
+    }
+
+    /// A copy is still under way at the end of the run.
+    #[inline]
+    pub fn in_flight(&mut self, topic: Topic) {
+        self.in_flight[usize::from(topic.0)] += 1;
+    }
+
+    /// `robot` reported a change.
+    ///
+    /// # Panics
+    /// If it reports a role or a parent that the run does not have.
+    pub fn note(&mut self, robot: ActorId, note: &Note) {
+        if let Note::Role(role) = note {
+            self.traffic.enter(robot, *role);
+        }
+        self.suspicions += u64::from(matches!(note, Note::Suspects(_)));
+        self.reports.note(robot, note);
+    }
+
+    /// Samples the swarm's graph and where everyone is, `positions` in order of ids.
+    pub fn sample(&mut self, now: SimTime, positions: &[Vec2]) {
+        let graph = Graph::within_range(positions, self.radio_range);
+        let components = graph.components() as u32;
+        let lambda2 = self.lambda2(graph);
+        let scene = Scene::new(&self.reports, positions, self.radio_range);
+        self.connectivity.push(ConnectivitySample {
+            at: now,
+            lambda2,
+            components,
+            roles: self.reports.count_roles(self.roles),
+            links: self
+                .judge
+                .as_ref()
+                .map_or_else(Vec::new, |judge| judge.mission.links(scene)),
+        });
+        self.trajectories
+            .push((now, positions.iter().map(|p| [p.x as f32, p.y as f32]).collect()));
+    }
+
+    /// λ₂ of `graph`, computed only if the graph differs from the last sample's.
+    fn lambda2(&mut self, graph: Graph) -> f64 {
+        match &self.last_graph {
+            Some((last, lambda2)) if *last == graph => *lambda2,
+            _ => {
+                let lambda2 = graph.algebraic_connectivity();
+                self.last_graph = Some((graph, lambda2));
+                lambda2
+            }
+        }
+    }
+
+    /// Judges the mission at control step number `step`, from 0, with every robot at its place in `positions`.
+    pub fn observe(&mut self, step: u64, positions: &[Vec2]) -> Progress {
+        let Some(judge) = &mut self.judge else {
+            return Progress::Underway;
+        };
+        judge.observe(step, Scene::new(&self.reports, positions, self.radio_range))
+    }
+
+    /// Closes the books.
+    ///
+    /// # Panics
+    /// If on some topic the copies offered are not those delivered, lost and in flight: the simulator itself is wrong.
+    #[must_use]
+    pub fn finish(self, end: RunEnd) -> TrialRecord {
+        let traffic = self.traffic.rows();
+        let ledger = ledger(&self.offered, &self.in_flight, &traffic);
+        for (topic, fates) in ledger.iter().enumerate() {
+            assert!(
+                fates.is_balanced(),
+                "frames were not conserved on topic {topic}: {fates}"
+            );
+        }
+        let outcome = self.judge.as_ref().map_or(Outcome::NoMission, |judge| {
+            judge
+                .completed_at()
+                .map_or(Outcome::Censored, |step| Outcome::Completed { step })
+        });
+        TrialRecord {
+            trial: end.trial,
+            seed: end.seed,
+            outcome,
+            steps: end.steps,
+            control_period: self.control_period,
+            simulated: end.simulated,
+            events: end.events,
+            digest: end.digest,
+            ledger,
+            traffic,
+            latency: self.latency,
+            suspicions: self.suspicions,
+            connectivity: self.connectivity,
+            robots: robots(self.reports, end.poses),
+            trajectories: self.trajectories,
+        }
+    }
+}
+
+/// Fates by topic: what was delivered and lost from the receivers' rows, the rest as counted at the senders.
+fn ledger(offered: &[u64], in_flight: &[u64], traffic: &[TrafficRow]) -> Vec<TopicFates> {
+    let counted = offered.iter().zip(in_flight);
+    let mut ledger: Vec<_> = counted
+        .map(|(&offered, &in_flight)| TopicFates {
+            offered,
+            in_flight,
+            ..TopicFates::default()
+        })
+        .collect();
+    for row in traffic {
+        let fates = &mut ledger[usize::from(row.topic)];
+        fates.delivered += row.received.frames;
+        for (lost, volume) in fates.lost.iter_mut().zip(&row.lost) {
+            *lost += volume.frames;
+        }
+    }
+    ledger
+}
+
+/// The robots as they ended.
+fn robots(reports: Reports, poses: Vec<Pose>) -> Vec<RobotState> {
+    let states = reports.roles.into_iter().zip(reports.targets).zip(reports.parents);
+    poses
+        .into_iter()
+        .zip(states)
+        .map(|(pose, ((role, target), parents))| RobotState {
+            pose,
+            role: role.0,
+            target,
+            parents,
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::Role;
+
+    const RANGE: f64 = 2.0;
+
+    fn recorder(mission: Option<Mission>) -> Recorder {
+        let layout = Layout {
+            robots: 3,
+            topics: 2,
+            roles: 2,
+            header_bytes: 5,
+            radio_range: RANGE,
+            control_period: Span::from_secs(0.1),
+            mission,
+        };
+        Recorder::new(layout, &MetricsConfig::default())
+    }
+
+    fn end() -> RunEnd {
+        RunEnd {
+            trial: 4,
+            seed: 9,
+            steps: 100,
+            simulated: SimTime::from_secs(10.0),
+            events: 1000,
+            digest: 7,
+            poses: vec![Pose::default(); 3],
+        }
+    }
+
+    fn line(spacing: f64) -> Vec<Vec2> {
+        (0..3).map(|i| Vec2::new(spacing * f64::from(i), 0.0)).collect()
+    }
+
+    #[test]
+    fn a_transmission_with_every_fate_balances_and_is_recorded_at_its_receivers() {
+        let mut recorder = recorder(None);
+        recorder.transmitted(ActorId(0), Topic(1), 4);
+        recorder.offered(Topic(1), 3);
+        recorder.delivered(ActorId(1), Topic(1), 4, Span::from_secs(0.02));
+        recorder.lost(ActorId(2), Topic(1), LossCause::Channel, 4);
+        recorder.in_flight(Topic(1));
+        let record = recorder.finish(end());
+        let mut expected = TopicFates {
+            offered: 3,
+            delivered: 1,
+            in_flight: 1,
+            ..TopicFates::default()
+        };
+        expected.lost[LossCause::Channel as usize] = 1;
+        assert_eq!(record.ledger, [TopicFates::default(), expected]);
+        assert_eq!(
+            record.traffic.iter().map(|row| row.robot.0).collect::<Vec<_>>(),
+            [0, 1, 2]
+        );
+        assert_eq!(record.latency.max(), Some(Span::from_secs(0.02)));
+        assert_eq!(record.outcome, Outcome::NoMission);
+        assert_eq!((record.trial, record.seed, record.steps, record.digest), (4, 9, 100, 7));
+    }
+
+    #[test]
+    #[should_panic(
+        expected = "frames were not conserved on topic 0: offered 10, delivered 2, lost 1 (channel 1), in flight 1"
+    )]
+    fn a_broken_ledger_ends_the_run_with_every_number() {
+        let mut recorder = recorder(None);
+        recorder.offered(Topic(0), 10);
+        for _ in 0..2 {
+            recorder.delivered(ActorId(1), Topic(0), 4, Span::ZERO);
+        }
+        recorder.lost(ActorId(2), Topic(0), LossCause::Channel, 4);
+        recorder.in_flight(Topic(0));
+        let _ = recorder.finish(end());
+    }
+
+    #[test]
+    fn samples_follow_the_graph_the_roles_and_the_paths() {
+        let mut recorder = recorder(None);
+        recorder.sample(SimTime::ZERO, &line(1.5));
+        recorder.note(ActorId(1), &Note::Role(Role(1)));
+        recorder.sample(SimTime::from_secs(1.0), &line(0.5));
+        recorder.sample(SimTime::from_secs(2.0), &line(2.5));
+        let record = recorder.finish(end());
+        let [path, complete, apart] = &record.connectivity[..] else {
+            panic!("three samples")
+        };
+        assert!(
+            (path.lambda2 - 1.0).abs() < 1e-9 && path.components == 1,
+            "a path of three"
+        );
+        assert!((complete.lambda2 - 3.0).abs() < 1e-9, "a triangle");
+        assert_eq!((apart.lambda2, apart.components), (0.0, 3));
+        assert_eq!((&path.roles[..], &complete.roles[..]), (&[3, 0][..], &[2, 1][..]));
+        assert_eq!(
+            record.trajectories[1].1[2].map(f32::to_bits),
+            [1.0_f32, 0.0].map(f32::to_bits)
+        );
+        assert_eq!(record.robots[1].role, 1);
+    }
+
+    #[test]
+    fn a_mission_never_held_is_censored() {
+        let mission = Mission {
+            targets: vec![super::super::MissionTarget {
+                position: Vec2::zeros(),
+                links: 1,
+            }],
+            reach: 0.3,
+            link_limit: 1.7,
+            root: ActorId(0),
+            worker_role: Role(1),
+        };
+        let mut recorder = recorder(Some(mission));
+        assert_eq!(recorder.observe(0, &line(1.0)), Progress::Underway);
+        recorder.sample(SimTime::ZERO, &line(1.0));
+        let record = recorder.finish(end());
+        assert_eq!(
+            (record.outcome, &record.connectivity[0].links[..]),
+            (Outcome::Censored, &[0][..])
+        );
+    }
+}

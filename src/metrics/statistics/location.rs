@@ -1,0 +1,170 @@
+//! Means, medians and proportions with their intervals.
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::spread::quantile;
+use super::{Estimate, TAIL, normal_quantile};
+
+/// The mean of `values`, one a trial, with Student's t interval; no interval from fewer than two.
+#[must_use]
+pub fn mean(values: &[f64]) -> Estimate {
+    let n = values.len() as f64;
+    // Taken about the first value, so that equal values have exactly their value as the mean, and no variance.
+    let mean = values
+        .first()
+        .map(|first| first + values.iter().map(|value| value - first).sum::<f64>() / n);
+    let half_width = mean.and_then(|mean| {
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let student = StudentsT::new(0.0, 1.0, n - 1.0).ok()?;
+        Some(student.inverse_cdf(1.0 - TAIL) * (squares / (n - 1.0) / n).sqrt())
+    });
+    let end = |sign: f64| Some(mean? + sign * half_width?);
+    Estimate {
+        value: mean,
+        ci95: [end(-1.0), end(1.0)],
+        n: values.len() as u64,
+    }
+}
+
+/// The median of `values`, one a trial and none of them censored, between the order statistics that hold it with at
+/// least 95 % whatever the distribution (binomial, equal tails). It needs no random numbers and assumes nothing, which
+/// a bootstrap of so few trials does; below six trials there is no such interval.
+#[must_use]
+pub fn median(values: &[f64]) -> Estimate {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let rank = outermost_rank(sorted.len());
+    Estimate {
+        value: quantile(&sorted, 0.5),
+        ci95: rank.map_or([None; 2], |rank| {
+            [Some(sorted[rank - 1]), Some(sorted[sorted.len() - rank])]
+        }),
+        n: values.len() as u64,
+    }
+}
+
+/// The greatest rank k for which the k-th least of `n` values exceeds the median with at most [`TAIL`]: that fewer
+/// than k of n fair coins fall heads.
+fn outermost_rank(n: usize) -> Option<usize> {
+    let mut probability = 0.5_f64.powf(n as f64);
+    let mut below = 0.0;
+    let mut rank = 0;
+    // For thousands of trials the first probabilities vanish and are built up in logarithms instead.
+    let mut log = -(n as f64) * std::f64::consts::LN_2;
+    while rank < n {
+        below += probability;
+        if below > TAIL {
+            break;
+        }
+        log += ((n - rank) as f64 / (rank + 1) as f64).ln();
+        probability = log.exp();
+        rank += 1;
+    }
+    (rank > 0).then_some(rank)
+}
+
+/// The share of `trials` that were `successes`, with Wilson's score interval.
+#[must_use]
+pub fn proportion(successes: u64, trials: u64) -> Estimate {
+    if trials == 0 {
+        return Estimate::default();
+    }
+    let (n, share, z) = (trials as f64, successes as f64 / trials as f64, normal_quantile());
+    let centre = (share + z * z / (2.0 * n)) / (1.0 + z * z / n);
+    let half_width = z / (1.0 + z * z / n) * (share * (1.0 - share) / n + z * z / (4.0 * n * n)).sqrt();
+    // At the extremes the end is exactly 0 or 1; rounding must not carry it past.
+    let low = if successes == 0 { 0.0 } else { centre - half_width };
+    let high = if successes == trials { 1.0 } else { centre + half_width };
+    Estimate {
+        value: Some(share),
+        ci95: [Some(low), Some(high)],
+        n: trials,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn assert_interval(estimate: Estimate, low: f64, high: f64) {
+        let [Some(a), Some(b)] = estimate.ci95 else {
+            panic!("no interval in {estimate:?}")
+        };
+        assert!(
+            (a - low).abs() < 1e-8 && (b - high).abs() < 1e-8,
+            "{a} {b} instead of {low} {high}"
+        );
+    }
+
+    #[test]
+    fn mean_and_interval_are_those_of_scipy() {
+        // scipy.stats.t.interval(0.95, n - 1, loc=numpy.mean(x), scale=scipy.stats.sem(x))
+        let x = [12.0, 7.0, 3.0, 25.0, 8.0, 14.0, 9.0, 30.0, 11.0, 5.0];
+        assert!((mean(&x).value.unwrap() - 12.4).abs() < 1e-12);
+        assert_interval(mean(&x), 6.198_406_171_035_676, 18.601_593_828_964_326);
+        assert_interval(mean(&[1.0, 3.0]), -10.706_204_736_174_694, 14.706_204_736_174_694);
+    }
+
+    #[test]
+    fn equal_values_are_their_own_mean_without_width() {
+        assert_eq!(
+            mean(&[0.1; 35]),
+            Estimate {
+                value: Some(0.1),
+                ci95: [Some(0.1); 2],
+                n: 35
+            }
+        );
+    }
+
+    #[test]
+    fn one_trial_has_no_interval_and_none_has_no_value() {
+        assert_eq!(
+            mean(&[2.0]),
+            Estimate {
+                value: Some(2.0),
+                ci95: [None; 2],
+                n: 1
+            }
+        );
+        for none in [mean(&[]), median(&[]), proportion(0, 0)] {
+            assert_eq!(none, Estimate::default());
+        }
+    }
+
+    #[test]
+    fn medians_lie_between_the_order_statistics_of_the_binomial() {
+        // ranks k and n + 1 - k, k = scipy.stats.binom.ppf(0.025, n, 0.5); n = 10, 35, 100 also
+        // scipy.stats.quantile_test(range(1, n + 1), q=median, p=0.5).confidence_interval(0.95)
+        for (n, low, high) in [
+            (6, 1.0, 6.0),
+            (10, 2.0, 9.0),
+            (35, 12.0, 24.0),
+            (36, 12.0, 25.0),
+            (100, 40.0, 61.0),
+            (10_000, 4902.0, 5099.0),
+        ] {
+            let values: Vec<f64> = (1..=n).rev().map(f64::from).collect();
+            assert_interval(median(&values), low, high);
+            assert_eq!(median(&values).value, Some(f64::from(n + 1) / 2.0));
+        }
+        assert_eq!(
+            median(&[1.0, 2.0, 3.0, 4.0, 5.0]),
+            Estimate {
+                value: Some(3.0),
+                ci95: [None; 2],
+                n: 5
+            }
+        );
+    }
+
+    #[test]
+    fn proportions_have_the_wilson_interval_of_scipy() {
+        // scipy.stats.binomtest(k, n).proportion_ci(0.95, method="wilson")
+        assert_interval(proportion(0, 10), 0.0, 0.277_532_799_862_889_26);
+        assert_interval(proportion(10, 10), 0.722_467_200_137_111, 1.0);
+        assert_interval(proportion(7, 10), 0.396_778_147_461_145_26, 0.892_208_732_593_699);
+        assert_interval(proportion(33, 35), 0.813_929_425_798_350_7, 0.984_186_838_142_891_3);
+        assert_interval(proportion(1, 2), 0.094_531_205_734_230_74, 0.905_468_794_265_769_3);
+    }
+}

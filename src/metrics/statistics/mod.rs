@@ -1,0 +1,33 @@
+//! Estimates over trials, each with its 95 % interval.
+//!
+//! Reference figures in the tests come from numpy, scipy and lifelines; the calls stand beside them.
+
+mod location;
+mod spread;
+mod survival;
+
+pub use location::{mean, median, proportion};
+pub use spread::{gini, quantile};
+pub use survival::{Observation, median_survival};
+
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// Probability that an interval leaves out on either side.
+const TAIL: f64 = 0.025;
+
+/// An estimate from a number of trials. What the trials cannot tell is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// The point estimate.
+    pub value: Option<f64>,
+    /// Lower and upper end of the 95 % interval.
+    pub ci95: [Option<f64>; 2],
+    /// Number of trials.
+    pub n: u64,
+}
+
+/// The standard normal quantile that leaves out [`TAIL`] above it, 1.96.
+fn normal_quantile() -> f64 {
+    Normal::standard().inverse_cdf(1.0 - TAIL)
+}

@@ -1,0 +1,210 @@
+//! The figures of an experiment, as `summary.json` holds them and the reports show them.
+//!
+//! Everything here follows from the records alone and depends on no machine. Keys and their order are stable.
+
+mod bandwidth;
+mod frames;
+mod quantity;
+
+pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
+pub use frames::{Fates, Frames};
+pub use quantity::{Measured, Named, Quantity, Unit};
+
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::engine::Span;
+
+use super::latency::LatencyHistogram;
+use super::record::{Outcome, TrialRecord};
+use super::statistics::{Estimate, Observation, mean, median, median_survival, proportion};
+use quantity::DIMENSIONLESS;
+
+const STEPS: &str = "control steps";
+const SECONDS: &str = "s";
+
+/// The figures of all trials of one scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Number of trials.
+    pub trials: u64,
+    /// Trials that completed their mission.
+    pub completed: u64,
+    /// Digest of the trials' digests, in order: 32 hexadecimal digits.
+    pub digest: String,
+    /// Share of the trials with a mission that completed it, with Wilson's interval.
+    pub completion_ratio: Measured,
+    /// Steps to completion, trials that did not complete counted as censored.
+    pub steps_to_completion: StepsToCompletion,
+    /// Frames by fate.
+    pub frames: Frames,
+    /// Copies delivered over copies offered: mean over trials.
+    pub delivery_ratio: Measured,
+    /// Latency of delivered frames.
+    pub latency_s: Latency,
+    /// Bytes that robots send and receive.
+    pub bandwidth: Bandwidth,
+    /// How evenly robots share the load.
+    pub load_imbalance: LoadImbalance,
+    /// The least λ₂ of a trial's samples.
+    pub lambda2_min: LeastConnectivity,
+    /// Share of a trial's samples in which the swarm is in one piece: mean over trials.
+    pub connected_share: Measured,
+    /// Robots that a mission took, those that ended in another role than the first: mean over trials.
+    pub robots_used: Measured,
+    /// Control steps simulated, over all trials.
+    pub steps: Quantity<u64>,
+    /// Time simulated, over all trials.
+    pub simulated_s: Quantity<f64>,
+}
+
+/// Control steps until a mission is complete.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepsToCompletion {
+    /// The Kaplan–Meier median.
+    pub median: Estimate,
+    /// Always `"control steps"`.
+    pub unit: Unit,
+}
+
+/// Time from the start of a transmission to its arrival; absent when nothing arrived.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Latency {
+    /// Median over all delivered frames, within 1/256.
+    pub p50: Option<f64>,
+    /// 95th percentile over all delivered frames, within 1/256.
+    pub p95: Option<f64>,
+    /// 99th percentile over all delivered frames, within 1/256.
+    pub p99: Option<f64>,
+    /// Mean over trials of each trial's mean.
+    pub mean: Estimate,
+    /// Always `"s"`.
+    pub unit: Unit,
+}
+
+/// The least λ₂ of each trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeastConnectivity {
+    /// Median over trials.
+    #[serde(flatten)]
+    pub estimate: Estimate,
+    /// Least over trials.
+    pub min: Option<f64>,
+    /// Always `"1"`.
+    pub unit: Unit,
+}
+
+impl Summary {
+    /// Summarises `records`, in order of trials, of the scenario called `scenario`; `topics` and `roles` are the names
+    /// that its protocol gives them.
+    #[must_use]
+    pub fn of(scenario: &str, topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Self {
+        let completed = records
+            .iter()
+            .filter(|record| matches!(record.outcome, Outcome::Completed { .. }))
+            .count() as u64;
+        let with_mission = records
+            .iter()
+            .filter(|record| record.outcome != Outcome::NoMission)
+            .count() as u64;
+        Self {
+            scenario: scenario.to_owned(),
+            trials: records.len() as u64,
+            completed,
+            digest: digest(records),
+            completion_ratio: ratio(proportion(completed, with_mission)),
+            steps_to_completion: StepsToCompletion::of(records),
+            frames: Frames::of(topics, records),
+            delivery_ratio: ratio(mean_over_trials(records, frames::delivery_ratio)),
+            latency_s: Latency::of(records),
+            bandwidth: Bandwidth::of(topics, roles, records),
+            load_imbalance: LoadImbalance::of(records),
+            lambda2_min: LeastConnectivity::of(records),
+            connected_share: ratio(mean_over_trials(records, TrialRecord::connected_share)),
+            robots_used: Measured {
+                estimate: mean_over_trials(records, |record| record.robots_used().map(|robots| robots as f64)),
+                unit: "robots".into(),
+            },
+            steps: Quantity {
+                value: records.iter().map(|record| record.steps).sum(),
+                unit: STEPS.into(),
+            },
+            simulated_s: Quantity {
+                value: records.iter().map(|record| record.simulated.as_secs()).sum(),
+                unit: SECONDS.into(),
+            },
+        }
+    }
+}
+
+fn ratio(estimate: Estimate) -> Measured {
+    Measured {
+        estimate,
+        unit: DIMENSIONLESS.into(),
+    }
+}
+
+/// The mean of a figure over the trials that have it.
+fn mean_over_trials(records: &[TrialRecord], figure: impl Fn(&TrialRecord) -> Option<f64>) -> Estimate {
+    mean(&records.iter().filter_map(figure).collect::<Vec<f64>>())
+}
+
+/// XXH3-128 of the trials' digests, each as 16 bytes, least significant first.
+fn digest(records: &[TrialRecord]) -> String {
+    let bytes: Vec<u8> = records.iter().flat_map(|record| record.digest.to_le_bytes()).collect();
+    format!("{:032x}", xxh3_128(&bytes))
+}
+
+impl StepsToCompletion {
+    fn of(records: &[TrialRecord]) -> Self {
+        let observe = |record: &TrialRecord| match record.outcome {
+            Outcome::Completed { step } => Some((step, true)),
+            Outcome::Censored => Some((record.steps, false)),
+            Outcome::NoMission => None,
+        };
+        let observed = records.iter().filter_map(observe);
+        let observations: Vec<Observation> = observed
+            .map(|(step, happened)| Observation {
+                time: step as f64,
+                happened,
+            })
+            .collect();
+        Self {
+            median: median_survival(&observations),
+            unit: STEPS.into(),
+        }
+    }
+}
+
+impl Latency {
+    fn of(records: &[TrialRecord]) -> Self {
+        let mut all = LatencyHistogram::default();
+        for record in records {
+            all.merge(&record.latency);
+        }
+        let quantile = |q| all.quantile(q).map(Span::as_secs);
+        Self {
+            p50: quantile(0.5),
+            p95: quantile(0.95),
+            p99: quantile(0.99),
+            mean: mean_over_trials(records, |record| record.latency.mean_secs()),
+            unit: SECONDS.into(),
+        }
+    }
+}
+
+impl LeastConnectivity {
+    fn of(records: &[TrialRecord]) -> Self {
+        let minima: Vec<f64> = records.iter().filter_map(TrialRecord::lambda2_min).collect();
+        Self {
+            estimate: median(&minima),
+            min: minima.iter().copied().min_by(f64::total_cmp),
+            unit: DIMENSIONLESS.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

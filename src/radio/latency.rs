@@ -1,0 +1,119 @@
+//! How long copies take.
+
+use rand_distr::{Distribution, Exp1, Gamma, StandardNormal, StandardUniform};
+use rand_philox::Philox;
+
+use super::config::LatencyConfig;
+use super::draw::FrameCopy;
+use crate::engine::{KeyedStreams, Purpose, Span, Streams};
+
+/// The stream of a copy's latency.
+const LATENCY: Purpose = Purpose::new("radio.latency");
+
+/// A latency model.
+#[derive(Debug)]
+pub(super) struct Latency {
+    model: Model,
+    draws: KeyedStreams,
+}
+
+#[derive(Debug)]
+enum Model {
+    Constant(Span),
+    Random(Law),
+}
+
+/// A distribution of seconds.
+#[derive(Debug)]
+enum Law {
+    Uniform { min: f64, width: f64 },
+    Normal { mean: f64, std_dev: f64, min: f64 },
+    LogNormal { median: f64, sigma: f64 },
+    Gamma(Gamma<f64>),
+    Exponential { mean: f64 },
+}
+
+impl Latency {
+    /// The model that `config` describes.
+    pub fn new(config: &LatencyConfig, streams: Streams) -> Self {
+        Self {
+            model: Model::new(config),
+            draws: streams.keyed(LATENCY),
+        }
+    }
+
+    /// The latency of `copy`, rounded to the nearest nanosecond.
+    #[inline]
+    pub fn of(&self, copy: FrameCopy) -> Span {
+        match &self.model {
+            Model::Constant(span) => *span,
+            Model::Random(law) => Span::from_secs(law.draw(&mut copy.stream(self.draws))),
+        }
+    }
+}
+
+impl Model {
+    /// A distribution without spread becomes the constant that it is.
+    fn new(config: &LatencyConfig) -> Self {
+        let constant = |seconds| Self::Constant(Span::from_secs(seconds));
+        match *config {
+            LatencyConfig::Constant(seconds) => constant(seconds.get()),
+            LatencyConfig::Uniform { min, max } if min == max => constant(min.get()),
+            LatencyConfig::Uniform { min, max } => Self::Random(Law::Uniform {
+                min: min.get(),
+                width: max.get() - min.get(),
+            }),
+            LatencyConfig::Normal { mean, std_dev, .. } if std_dev.get() == 0.0 => constant(mean.get()),
+            LatencyConfig::Normal { mean, std_dev, min } => Self::Random(Law::Normal {
+                mean: mean.get(),
+                std_dev: std_dev.get(),
+                min: min.get(),
+            }),
+            LatencyConfig::LogNormal { median, sigma } if sigma.get() == 0.0 => constant(median.get()),
+            LatencyConfig::LogNormal { median, sigma } => Self::Random(Law::LogNormal {
+                median: median.get(),
+                sigma: sigma.get(),
+            }),
+            LatencyConfig::Gamma { shape, scale } => Self::Random(Law::Gamma(
+                Gamma::new(shape.get(), scale.get()).expect("shape and scale are above 0 by their type"),
+            )),
+            LatencyConfig::Exponential { mean } => Self::Random(Law::Exponential { mean: mean.get() }),
+        }
+    }
+}
+
+impl Law {
+    /// One latency in seconds.
+    #[inline]
+    fn draw(&self, random: &mut Philox) -> f64 {
+        match self {
+            Self::Uniform { min, width } => {
+                let share: f64 = StandardUniform.sample(random);
+                min + width * share
+            }
+            Self::Normal { mean, std_dev, min } => truncated_normal(*mean, *std_dev, *min, random),
+            Self::LogNormal { median, sigma } => {
+                let normal: f64 = StandardNormal.sample(random);
+                median * (sigma * normal).exp()
+            }
+            Self::Gamma(gamma) => gamma.sample(random),
+            Self::Exponential { mean } => {
+                let exponential: f64 = Exp1.sample(random);
+                mean * exponential
+            }
+        }
+    }
+}
+
+/// A normal draw, repeated until it is at least `min`. As `min` is at most `mean`, each try succeeds with a
+/// probability of at least one half.
+#[inline]
+fn truncated_normal(mean: f64, std_dev: f64, min: f64, random: &mut Philox) -> f64 {
+    loop {
+        let normal: f64 = StandardNormal.sample(random);
+        let latency = mean + std_dev * normal;
+        if latency >= min {
+            return latency;
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! The report that `desim scenario` ends with.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use comfy_table::{CellAlignment, ContentLineStyle, LineStyle, Table, TableStyle};
+
+use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
+use crate::metrics::Summary;
+use crate::metrics::summary::{Directions, Quantity, Spread, TopicBandwidth};
+
+/// Columns that every line keeps within.
+const WIDTH: usize = 80;
+/// Columns of the names on the left.
+const MARGIN: usize = 14;
+
+/// What a report is made of.
+#[derive(Debug)]
+pub struct Input<'a> {
+    /// The question that the scenario asks.
+    pub question: Option<&'a str>,
+    /// The figures.
+    pub summary: &'a Summary,
+    /// Length of a control step, seconds.
+    pub control_period_s: f64,
+    /// What the run took.
+    pub speed: Speed,
+    /// Where the results are.
+    pub folder: &'a Path,
+    /// Names of the files there.
+    pub files: &'a [&'a str],
+    /// Whether to use colours.
+    pub colour: bool,
+}
+
+/// What the trials took, all together.
+#[derive(Clone, Copy, Debug)]
+pub struct Speed {
+    /// Simulated seconds.
+    pub simulated_s: f64,
+    /// Copies of frames delivered.
+    pub delivered: u64,
+    /// Wall time of the threads that ran the trials, seconds.
+    pub wall_s: f64,
+}
+
+/// The report as text, at most 80 columns wide.
+#[must_use]
+pub fn terminal(input: &Input) -> String {
+    let mut page = Page { text: String::new(), colour: input.colour };
+    page.title(&input.summary.scenario, input.question);
+    outcome(&mut page, input);
+    bandwidth(&mut page, input.summary);
+    radio(&mut page, input.summary);
+    connectivity(&mut page, input.summary);
+    run(&mut page, input);
+    page.text
+}
+
+fn outcome(page: &mut Page, input: &Input) {
+    let summary = input.summary;
+    page.heading("Mission");
+    let Some(share) = summary.completion_ratio.estimate.value else {
+        page.line("  none: every trial ran to its time limit");
+        return;
+    };
+    let [low, high] = summary.completion_ratio.estimate.ci95.map(|end| end.map_or(NOTHING.into(), percent));
+    let completed = format!(
+        "{} of {} trials: {} [{low}, {high}]",
+        count(summary.completed),
+        count(summary.completion_ratio.estimate.n),
+        percent(share)
+    );
+    page.entry("completed", &completed);
+    let median = &summary.steps_to_completion.median;
+    let steps = match median.value {
+        Some(steps) => format!(
+            "{} control steps, {}: Kaplan–Meier median of {} trials",
+            estimate(median, figure),
+            seconds(steps * input.control_period_s),
+            median.n
+        ),
+        None => format!("{}: fewer than half of {} trials completed", estimate(median, figure), median.n),
+    };
+    page.entry("after", &steps);
+    page.entry("robots used", &format!("{} on average", estimate(&summary.robots_used.estimate, figure)));
+}
+
+fn bandwidth(page: &mut Page, summary: &Summary) {
+    let bandwidth = &summary.bandwidth;
+    page.heading("Bandwidth of a robot: bytes a control step, headers included");
+    let mut table = Table::new();
+    table.load_style(RULED).set_header(HEADER);
+    for (name, topic) in &bandwidth.by_topic.0 {
+        let TopicBandwidth { directions, lost_bytes_per_step, header_share } = topic;
+        table.add_row(row(name, directions, &maybe(lost_bytes_per_step.median), &share(header_share)));
+    }
+    table.add_row(row("all topics", &bandwidth.total, "", ""));
+    for (index, column) in table.column_iter_mut().enumerate() {
+        column.set_padding((2, 0));
+        column.set_cell_alignment(if index == 0 { CellAlignment::Left } else { CellAlignment::Right });
+    }
+    page.line(&table.trim_fmt());
+    page.line("");
+    let mean = |spread: &Spread| estimate(&spread.mean, figure);
+    let Directions { tx_bytes_per_step: sent, rx_bytes_per_step: received, .. } = &bandwidth.total;
+    page.entry("mean", &format!("sent {}, received {}", mean(sent), mean(received)));
+    let load = &summary.load_imbalance;
+    let load = format!("sent {}, received {}", estimate(&load.tx, figure), estimate(&load.rx, figure));
+    page.entry("Gini of load", &format!("{load}; 0 where all carry the same"));
+}
+
+/// Columns apart, a rule under the header.
+const RULED: TableStyle = TableStyle::new()
+    .header_lines(ContentLineStyle::none())
+    .header_separator(LineStyle::none().fill('─'))
+    .content_lines(ContentLineStyle::none());
+const HEADER: [&str; 9] =
+    ["", "sent\nleast", "\nmedian", "\nmost", "received\nleast", "\nmedian", "\nmost", "lost\nmedian", "headers\nin sent"];
+
+fn row(name: &str, directions: &Directions, lost: &str, header: &str) -> [String; 9] {
+    let [a, b, c] = spread(&directions.tx_bytes_per_step);
+    let [d, e, f] = spread(&directions.rx_bytes_per_step);
+    [name.to_owned(), a, b, c, d, e, f, lost.to_owned(), header.to_owned()]
+}
+
+fn spread(spread: &Spread) -> [String; 3] {
+    [spread.min, spread.median, spread.max].map(maybe)
+}
+
+fn share(share: &Quantity<Option<f64>>) -> String {
+    share.value.map_or_else(|| NOTHING.to_owned(), |share| format!("{:.0} %", share * 100.0))
+}
+
+fn radio(page: &mut Page, summary: &Summary) {
+    page.heading("Radio");
+    let fates = &summary.frames.total;
+    page.entry("delivered", &format!("{} of the copies offered", estimate(&summary.delivery_ratio.estimate, percent)));
+    let latency = &summary.latency_s;
+    let [median, p95, p99] =
+        [latency.p50, latency.p95, latency.p99].map(|quantile| quantile.map_or(NOTHING.into(), seconds));
+    page.entry("latency", &format!("median {median}, 95 % within {p95}, 99 % within {p99}"));
+    let lost: u64 = fates.lost.0.iter().map(|(_, frames)| frames).sum();
+    let causes: Vec<_> = fates.lost.0.iter().map(|(cause, frames)| format!("{cause} {}", count(*frames))).collect();
+    let balanced = fates.offered == fates.delivered + lost + fates.in_flight;
+    let balance = format!(
+        "{} copies {} {} delivered + {} lost ({}) + {} in flight",
+        count(fates.offered),
+        if balanced { "=" } else { "≠" },
+        count(fates.delivered),
+        count(lost),
+        causes.join(", "),
+        count(fates.in_flight)
+    );
+    page.entry("offered", &balance);
+}
+
+fn connectivity(page: &mut Page, summary: &Summary) {
+    page.heading("Connectivity");
+    let lambda2 = &summary.lambda2_min;
+    if lambda2.min.is_none() {
+        page.line("  not sampled");
+        return;
+    }
+    let least = format!("{} median of trials, {} at worst", estimate(&lambda2.estimate, figure), maybe(lambda2.min));
+    page.entry("least λ₂", &least);
+    let connected = estimate(&summary.connected_share.estimate, percent);
+    page.entry("in one piece", &format!("{connected} of the time"));
+}
+
+fn run(page: &mut Page, input: &Input) {
+    page.heading("Run");
+    let Speed { simulated_s, delivered, wall_s } = input.speed;
+    let trials = input.summary.trials;
+    let simulated = format!(
+        "{} in {} trial{}, {} control steps",
+        seconds(simulated_s),
+        count(trials),
+        if trials == 1 { "" } else { "s" },
+        count(input.summary.steps.value)
+    );
+    page.entry("simulated", &simulated);
+    if wall_s > 0.0 {
+        let speed = format!(
+            "{} simulated seconds and {} deliveries a second on each thread",
+            figure(simulated_s / wall_s),
+            figure(delivered as f64 / wall_s)
+        );
+        page.entry("speed", &speed);
+    }
+    page.entry("digest", &input.summary.digest);
+    page.entry("results", &input.folder.display().to_string());
+    page.entry("", &input.files.join(", "));
+    page.line("");
+    page.line("Figures in brackets are 95 % intervals over trials.");
+}
+
+/// Text being laid out.
+struct Page {
+    text: String,
+    colour: bool,
+}
+
+impl Page {
+    fn title(&mut self, name: &str, question: Option<&str>) {
+        let name = self.bold(name);
+        self.line(&name);
+        for line in wrap(question.unwrap_or_default(), WIDTH) {
+            self.line(&line);
+        }
+    }
+
+    fn heading(&mut self, words: &str) {
+        let words = self.bold(words);
+        self.line("");
+        self.line(&words);
+    }
+
+    /// A name on the left, words on the right, over as many lines as they need.
+    fn entry(&mut self, name: &str, words: &str) {
+        let mut name = name;
+        for line in wrap(words, WIDTH - MARGIN - 2) {
+            self.line(&format!("  {name:<MARGIN$}{line}"));
+            name = "";
+        }
+    }
+
+    fn line(&mut self, words: &str) {
+        // Writing to a string does not fail.
+        let _ = writeln!(self.text, "{}", words.trim_end());
+    }
+
+    fn bold(&self, words: &str) -> String {
+        if self.colour { format!("\u{1b}[1m{words}\u{1b}[0m") } else { words.to_owned() }
+    }
+}
+
+/// Breaks `words` at blanks into lines of at most `width` characters; a longer word stands alone.
+fn wrap(words: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words.split(' ').filter(|word| !word.is_empty()) {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}

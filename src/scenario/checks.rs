@@ -1,0 +1,280 @@
+//! What no field shows on its own: relations between fields, and bounds on memory and time.
+
+use std::f64::consts::PI;
+
+use crate::engine::Span;
+use crate::motion::DeployConfig;
+use crate::quantity::Positive;
+
+use super::path::FieldPath;
+use super::{ProtocolConfig, Scenario, limits};
+
+/// Something wrong with a scenario whose fields are each of the right form.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// The field that is best changed.
+    pub path: FieldPath,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right, where the message does not say so.
+    pub help: Option<String>,
+    /// Other fields that it depends on.
+    pub also: Vec<FieldPath>,
+}
+
+impl Problem {
+    fn new(path: &str, message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self {
+            path: FieldPath::of(path),
+            message: message.into(),
+            help: Some(help.into()),
+            also: Vec::new(),
+        }
+    }
+
+    /// A problem that a section found in itself, at a path relative to it.
+    fn of_section(section: &str, (path, message): (String, String)) -> Self {
+        let path = FieldPath::of(format!("{section}.{path}").trim_end_matches('.'));
+        Self {
+            message: format!("`{path}`: {message}"),
+            path,
+            help: None,
+            also: Vec::new(),
+        }
+    }
+
+    /// Every field that it depends on, first the one best changed.
+    pub fn involved(&self) -> impl Iterator<Item = &FieldPath> {
+        std::iter::once(&self.path).chain(&self.also)
+    }
+
+    fn with(mut self, also: &[&str]) -> Self {
+        self.also = also.iter().map(|path| FieldPath::of(path)).collect();
+        self
+    }
+}
+
+/// Everything wrong with `scenario`.
+pub fn problems(scenario: &Scenario) -> Vec<Problem> {
+    let mut found = counts(scenario);
+    found.extend(periods(scenario));
+    if found.is_empty() {
+        // Times and sizes are computed from counts and periods that hold.
+        found.extend(times(scenario));
+        found.extend(sizes(scenario));
+    }
+    found.extend(name(scenario));
+    found.extend(sections(scenario));
+    found
+}
+
+fn name(scenario: &Scenario) -> Option<Problem> {
+    let name = &scenario.name;
+    let fits = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
+    let help = format!(
+        "use 1 to {} letters a-z, A-Z, digits, `-` and `_`: it names the results folder",
+        limits::NAME
+    );
+    let refused = |message: String| Some(Problem::new("name", message, help));
+    match name.chars().find(|letter| !fits(*letter)) {
+        Some(letter) => refused(format!("the name {name:?} has {letter:?} in it")),
+        None if name.is_empty() => refused("the name is empty".into()),
+        None if name.len() > limits::NAME => refused(format!("the name is {} letters long", name.len())),
+        None => None,
+    }
+}
+
+fn counts(scenario: &Scenario) -> Vec<Problem> {
+    let mut found = Vec::new();
+    let mut count = |path: &str, value: u32, most: u32| {
+        if !(1..=most).contains(&value) {
+            let message = format!("{value} is out of range for `{path}`");
+            found.push(Problem::new(
+                path,
+                message,
+                format!("expected a whole number from 1 to {most}"),
+            ));
+        }
+    };
+    count("trials", scenario.trials, limits::TRIALS);
+    count("swarm.robots", scenario.swarm.robots, limits::ROBOTS);
+    found
+}
+
+/// What each section finds wrong with itself.
+fn sections(scenario: &Scenario) -> Vec<Problem> {
+    let Scenario {
+        arena,
+        motion,
+        swarm,
+        radio,
+        ..
+    } = scenario;
+    let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
+    let protocol = match &scenario.protocol {
+        ProtocolConfig::Backbone(backbone) => backbone.problems(swarm.robots, radio.range.get()),
+        ProtocolConfig::Heartbeat => Vec::new(),
+    };
+    let around = ["swarm.robots", "arena.size", "motion.body_radius"];
+    let sections: [(_, _, &[&str]); 5] = [
+        ("arena", arena.problems(), &[]),
+        ("motion", motion.problems(), &[]),
+        ("radio", radio.problems(), &[]),
+        ("swarm.deploy", deploy, &around),
+        ("protocol", protocol, &["swarm.robots", "radio.range"]),
+    ];
+    let found = sections.into_iter().flat_map(|(section, problems, also)| {
+        let placed = move |problem| Problem::of_section(section, problem).with(also);
+        problems.into_iter().map(placed)
+    });
+    found.collect()
+}
+
+fn periods(scenario: &Scenario) -> Vec<Problem> {
+    let gossip = &scenario.gossip;
+    let periods = [
+        ("control.period", scenario.control.period),
+        ("motion.tick", scenario.motion.tick),
+        ("gossip.status.interval", gossip.status.interval),
+        ("gossip.strand.interval", gossip.strand.interval),
+        ("gossip.request.interval", gossip.request.interval),
+    ];
+    let mut found: Vec<_> = periods
+        .into_iter()
+        .filter_map(|(path, period)| too_short(path, period))
+        .collect();
+    let time_limit = scenario.time_limit.get();
+    if time_limit > limits::SECONDS {
+        let message = format!("a time limit of {time_limit} s is out of range");
+        let help = format!("expected at most {} s", limits::SECONDS);
+        found.push(Problem::new("time_limit", message, help));
+    }
+    found
+}
+
+fn too_short(path: &str, period: Positive) -> Option<Problem> {
+    let period = period.get();
+    (period < limits::SHORTEST_PERIOD).then(|| {
+        let message = format!("`{path}` of {period} s is too short");
+        Problem::new(
+            path,
+            message,
+            format!("expected at least {} s", limits::SHORTEST_PERIOD),
+        )
+    })
+}
+
+fn times(scenario: &Scenario) -> Vec<Problem> {
+    let mut found = Vec::new();
+    let period = scenario.control.period.get();
+    let tick = scenario.motion.tick.get();
+    let time_limit = scenario.time_limit.get();
+    let hold = scenario.metrics.hold.get();
+    if !Span::from_secs(period)
+        .as_nanos()
+        .is_multiple_of(Span::from_secs(tick).as_nanos())
+    {
+        let message = format!("a control period of {period} s is no whole number of motion ticks of {tick} s");
+        let help = "make `control.period` a multiple of `motion.tick`";
+        found.push(Problem::new("control.period", message, help).with(&["motion.tick"]));
+    }
+    if time_limit < period {
+        let message = format!("the time limit of {time_limit} s ends before the first control period of {period} s");
+        let help = "make `time_limit` longer than `control.period`";
+        found.push(Problem::new("time_limit", message, help).with(&["control.period"]));
+    }
+    if matches!(scenario.protocol, ProtocolConfig::Backbone(_)) && hold >= time_limit {
+        let message =
+            format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
+        let help = "make `time_limit` longer, or `metrics.hold` shorter";
+        found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
+    }
+    found
+}
+
+fn sizes(scenario: &Scenario) -> Vec<Problem> {
+    let robots = f64::from(scenario.swarm.robots);
+    let time_limit = scenario.time_limit.get();
+    let steps = time_limit / scenario.control.period.get();
+    let ticks = time_limit / scenario.motion.tick.get();
+    let sample_interval = scenario.metrics.sample_interval.get();
+    let samples = if sample_interval > 0.0 {
+        time_limit / sample_interval
+    } else {
+        0.0
+    };
+    let positions = robots * samples;
+    let gossip = &scenario.gossip;
+    let intervals = [&gossip.status, &gossip.strand, &gossip.request].map(|topic| topic.interval.get());
+    let shortest = intervals
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
+        .max(scenario.control.period.get());
+    // Frames that a robot has in the air at once.
+    let overlap = 1.0 + scenario.radio.latency.mean().min(time_limit) / shortest;
+    let copies = robots * neighbours(scenario) * overlap;
+    let bound = |path: &str, also: &[&str], what: &str, value: f64, most: f64, help: &str| {
+        (value > most).then(|| {
+            let message = format!("{value:.3e} {what}, more than the {most:.0e} that a trial may have");
+            Problem::new(path, message, help).with(also)
+        })
+    };
+    [
+        bound(
+            "time_limit",
+            &["control.period", "motion.tick"],
+            "steps or ticks in a trial",
+            steps.max(ticks),
+            limits::STEPS,
+            "make `time_limit` shorter, or `control.period` and `motion.tick` longer",
+        ),
+        bound(
+            "time_limit",
+            &["control.period", "swarm.robots"],
+            "control steps of all robots in a trial",
+            robots * steps,
+            limits::ROBOT_STEPS,
+            "make `time_limit` shorter, `control.period` longer, or `swarm.robots` fewer",
+        ),
+        bound(
+            "metrics.sample_interval",
+            &["time_limit", "swarm.robots"],
+            "sampled positions in a trial",
+            positions,
+            limits::SAMPLED_POSITIONS,
+            "make `metrics.sample_interval` longer",
+        ),
+        bound(
+            "radio.range",
+            &[
+                "radio.latency",
+                "swarm.robots",
+                "swarm.deploy",
+                "arena.size",
+                "motion.body_radius",
+            ],
+            "copies of frames under way at once",
+            copies,
+            limits::COPIES,
+            "make `radio.range` or `radio.latency` shorter, or spread fewer robots over more room",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// Robots that hear a broadcast at the start, an upper bound: as dense as they are deployed, and never overlapping.
+fn neighbours(scenario: &Scenario) -> f64 {
+    let robots = f64::from(scenario.swarm.robots);
+    let range = scenario.radio.range.get();
+    let (width, height) = &scenario.arena.size;
+    let packed = (range / scenario.motion.body_radius.get() + 1.0).powi(2);
+    let within = |area: f64| robots * PI * range * range / area;
+    let expected = match &scenario.swarm.deploy {
+        DeployConfig::Cluster { radius } => within(PI * radius.get() * radius.get()),
+        DeployConfig::Uniform => within(width.get() * height.get()),
+        DeployConfig::At(_) => robots,
+    };
+    expected.min(packed).min(robots)
+}

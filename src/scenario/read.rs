@@ -1,0 +1,272 @@
+//! Reads scenario text. Where a field is wrong, it is reported, blanked out, and the rest is read again, so that one
+//! pass names everything that is wrong.
+
+use std::sync::Arc;
+
+use ron::error::{Error, SpannedError};
+use ron::extensions::Extensions;
+use serde::Deserialize;
+
+use super::checks::{Problem, problems};
+use super::explain::{Finding, explain, nearest};
+use super::overrides::Override;
+use super::path::{FieldPath, Step, field_at, follow, head, path_at};
+use super::report::{Diagnostic, Place, Report};
+use super::source::{Source, blank};
+use super::token::Span;
+use super::tree::{self, MAX_DEPTH};
+use super::{Scenario, limits, to_ron};
+
+/// How scenario files are read and written: variants hold their fields without a second pair of brackets.
+pub fn options() -> ron::Options {
+    ron::Options::default()
+        .with_default_extension(Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME)
+        .with_recursion_limit(MAX_DEPTH)
+}
+
+/// Reads the scenario in `text`, the contents of the file `name`, with `overrides` worked in, in order.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn parse(name: &str, text: &str, overrides: &[Override]) -> Result<Scenario, Report> {
+    let mut reader = Reader {
+        name,
+        file: text.into(),
+        overrides,
+        source: Source::new(text),
+        diagnostics: Vec::new(),
+    };
+    for (index, given) in overrides.iter().enumerate() {
+        let resolved = typed(reader.source.text()).ok().map(|scenario| to_ron(&scenario));
+        if let Err(misfit) = given.apply(index, &mut reader.source, resolved.as_deref()) {
+            reader.diagnostics.extend(misfit.diagnostics);
+        }
+    }
+    let scenario = reader.scenario();
+    match scenario {
+        Some(scenario) if reader.diagnostics.is_empty() => Ok(scenario),
+        _ => Err(reader.report()),
+    }
+}
+
+/// What serde makes of `text`.
+pub(super) fn typed(text: &str) -> Result<Scenario, Box<Failure>> {
+    let at_start = |error: SpannedError| {
+        Box::new(Failure {
+            error,
+            path: FieldPath::default(),
+            whole: true,
+        })
+    };
+    let mut reader = ron::Deserializer::from_str_with_options(text, &options()).map_err(at_start)?;
+    let mut track = serde_path_to_error::Track::new();
+    let read = Scenario::deserialize(serde_path_to_error::Deserializer::new(&mut reader, &mut track));
+    let read = read.and_then(|scenario| reader.end().map(|()| scenario));
+    read.map_err(|code| {
+        let path = track.path();
+        let unknown = |segment: &_| matches!(segment, serde_path_to_error::Segment::Unknown);
+        Box::new(Failure {
+            error: reader.span_error(code),
+            path: FieldPath::reached(&path),
+            whole: !path.iter().any(unknown),
+        })
+    })
+}
+
+/// An error of serde, with the path that it had reached.
+pub(super) struct Failure {
+    pub(super) error: SpannedError,
+    path: FieldPath,
+    /// Whether the path is known to its last step.
+    whole: bool,
+}
+
+/// How a text is changed so that the rest of it can be read. What stands before it keeps its place.
+enum Repair {
+    /// Without this field.
+    LeaveOut(Span),
+    /// With this field, at the end of the scenario.
+    Add(usize, String),
+}
+
+/// Fields that every scenario must have, as they are read on where one is missing: nothing is reported of them.
+const STAND_INS: [(&str, &str); 4] = [
+    ("name", "name: \"scenario\""),
+    ("time_limit", "time_limit: 100.0"),
+    ("swarm", "swarm: (robots: 10, deploy: Uniform)"),
+    ("protocol", "protocol: Backbone(targets: Ring(count: 1, radius: 1.0))"),
+];
+
+struct Reader<'a> {
+    name: &'a str,
+    file: Arc<str>,
+    overrides: &'a [Override],
+    source: Source,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Reader<'_> {
+    /// The scenario, or what is left of it without its faults, whose diagnostics are kept.
+    fn scenario(&mut self) -> Option<Scenario> {
+        let mut text = self.source.text().to_owned();
+        let mut blanked = Vec::new();
+        loop {
+            match typed(&text) {
+                Ok(scenario) => {
+                    self.check(&scenario, &blanked);
+                    return Some(scenario);
+                }
+                Err(failure) => match self.fault(&failure, &text, &mut blanked)? {
+                    Repair::LeaveOut(span) => blank(&mut text, &span),
+                    Repair::Add(at, field) => text.insert_str(at, &field),
+                },
+            }
+        }
+    }
+
+    /// Reports a failure, unless an earlier one caused it. Answers how to read the rest without it, if there is a way.
+    fn fault(&mut self, failure: &Failure, text: &str, blanked: &mut Vec<FieldPath>) -> Option<Repair> {
+        let (root, faults) = tree::read(text);
+        let Some(root) = root.filter(|_| faults.is_empty()) else {
+            self.form(&faults, text);
+            return None;
+        };
+        let finding = explain(&failure.error, &failure.path, failure.whole, &root, text);
+        let missing = matches!(failure.error.code, Error::MissingStructField { .. });
+        let field = if missing {
+            follow(&root, &failure.path, text).field
+        } else {
+            field_at(&root, finding.span.start)
+        };
+        let path = field.map(|field| path_at(&root, field.start(), text));
+        let caused = missing && blanked.iter().any(|path| stands_for(path, &finding.path));
+        let finding_path = finding.path.clone();
+        if !caused {
+            self.add(finding);
+        }
+        if self.diagnostics.len() >= limits::DIAGNOSTICS {
+            return None;
+        }
+        if let (Error::MissingStructField { field, .. }, None) = (&failure.error.code, field) {
+            let (_, stand_in) = STAND_INS.iter().find(|(name, _)| name == field)?;
+            blanked.push(finding_path);
+            let group = root.group?;
+            let comma = if group.items.last().is_some_and(|last| !last.comma) {
+                ", "
+            } else {
+                ""
+            };
+            return Some(Repair::Add(group.inside.end, format!("{comma}{stand_in}")));
+        }
+        blanked.push(path?);
+        field.map(|field| Repair::LeaveOut(field.start()..field.end))
+    }
+
+    /// Reports what is wrong with the form of the text.
+    fn form(&mut self, faults: &[super::token::Fault], text: &str) {
+        let root = tree::read(text).0;
+        for fault in faults.iter().take(limits::DIAGNOSTICS) {
+            let path = root.as_ref().map(|root| path_at(root, fault.span.start, text));
+            self.add(Finding {
+                message: fault.message.clone(),
+                help: Some(fault.help.clone()),
+                path: path.unwrap_or_default(),
+                span: fault.span.clone(),
+                label: "here".into(),
+            });
+        }
+        if faults.is_empty() {
+            self.add(Finding {
+                message: "the file holds no scenario".into(),
+                help: Some("a scenario file holds `Scenario( ... )`".into()),
+                path: FieldPath::default(),
+                span: text.len()..text.len(),
+                label: "the file ends here".into(),
+            });
+        }
+    }
+
+    /// Reports what is wrong between fields, but not what a fault of one of them may have caused.
+    fn check(&mut self, scenario: &Scenario, blanked: &[FieldPath]) {
+        let text = self.source.text().to_owned();
+        let (Some(root), _) = tree::read(&text) else {
+            return;
+        };
+        let stands = |path: &FieldPath| follow(&root, path, &text).steps == path.0.len();
+        let caused = |problem: &Problem| {
+            problem.involved().any(|path| {
+                // A field that the file leaves out may be the one that is misspelt beside it.
+                let misspelt = |left_out: &FieldPath| !stands(path) && left_out.parent() == path.parent();
+                let touches = |left_out: &FieldPath| left_out.holds(path) || path.holds(left_out);
+                blanked.iter().any(|left_out| touches(left_out) || misspelt(left_out))
+            })
+        };
+        for problem in problems(scenario).into_iter().filter(|problem| !caused(problem)) {
+            let finding = between(problem, &root, &text);
+            self.add(finding);
+        }
+    }
+
+    fn add(&mut self, finding: Finding) {
+        let location = self.source.locate(&finding.span);
+        let given = location.override_index.and_then(|index| self.overrides.get(index));
+        let (prefix, name, text) = match given {
+            Some(given) => (given.prefix(), "--set", given.text()),
+            None => (String::new(), self.name, &self.file),
+        };
+        self.diagnostics.push(Diagnostic {
+            message: format!("{prefix}{}", finding.message),
+            help: finding.help,
+            path: Some(finding.path.to_string()).filter(|path| !path.is_empty()),
+            place: Some(Place::new(name, text, location.span, finding.label)),
+        });
+    }
+
+    fn report(mut self) -> Report {
+        // By line; what stands in overrides comes after the file.
+        self.diagnostics.sort_by_key(|diagnostic| {
+            let place = diagnostic.place.as_ref();
+            place.map(|place| (place.name != self.name, place.line, place.column))
+        });
+        Report {
+            diagnostics: self.diagnostics,
+        }
+    }
+}
+
+/// Whether `blanked` is the field `missing`, or a misspelt name of it.
+fn stands_for(blanked: &FieldPath, missing: &FieldPath) -> bool {
+    let (blanked, missing) = (blanked.plain(), missing.plain());
+    match (blanked.0.last(), missing.0.last()) {
+        (Some(Step::Field(found)), Some(Step::Field(known))) if blanked.parent() == missing.parent() => {
+            found == known || nearest(found, &[known]).is_some()
+        }
+        _ => false,
+    }
+}
+
+/// Places a problem at its field, or where that is left out, at another that it depends on, or at what is around it.
+fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
+    let stands = |path: &&FieldPath| {
+        let place = follow(root, path, text);
+        place.steps == path.0.len()
+    };
+    let path = problem.involved().find(stands);
+    let place = follow(root, path.unwrap_or(&problem.path), text);
+    let (span, label) = match (path, place.field) {
+        (Some(_), _) if place.node.group.is_none() => (place.node.span.clone(), "here".to_owned()),
+        (None, Some(field)) => {
+            let key = field.key.clone().unwrap_or_else(|| head(place.node));
+            (key, format!("leaves `{}` at its default", problem.path))
+        }
+        (None, None) => (head(place.node), format!("leaves `{}` at its default", problem.path)),
+        (Some(_), _) => (head(place.node), "here".to_owned()),
+    };
+    Finding {
+        message: problem.message,
+        help: problem.help,
+        path: problem.path,
+        span,
+        label,
+    }
+}

@@ -1,0 +1,195 @@
+//! What is wrong with a scenario, as people read it.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
+
+use super::lines::{line_of, line_start};
+
+/// Longest line that is shown around an error, bytes.
+const LONGEST_LINE: usize = 400;
+/// Columns of a report that is not for a terminal.
+const WIDTH: usize = 80;
+
+/// One thing that is wrong, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right and what to do.
+    pub help: Option<String>,
+    /// Path of the field that it is about, such as `radio.loss`; `None` if it is about no field.
+    pub path: Option<String>,
+    /// Where it stands; `None` if it is about the file as a whole.
+    pub place: Option<Place>,
+}
+
+/// Where something stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Name of the file, or `--set`.
+    pub name: String,
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// What the label under the line says.
+    pub label: String,
+    span: Range<usize>,
+    text: Arc<str>,
+}
+
+impl Place {
+    /// The place of the bytes `span` in `text`, which `name` holds.
+    #[must_use]
+    pub fn new(name: &str, text: &Arc<str>, span: Range<usize>, label: impl Into<String>) -> Self {
+        let start = floor(text, span.start);
+        let first = line_start(text, start);
+        let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+        let end = floor(text, span.end).clamp(start, line_end);
+        Self {
+            name: name.into(),
+            line: line_of(text, start),
+            column: 1 + text[first..start].chars().count(),
+            label: label.into(),
+            span: start..end,
+            text: Arc::clone(text),
+        }
+    }
+
+    fn is_on_a_short_line(&self) -> bool {
+        let before = line_start(&self.text, self.span.start);
+        let line = self.text[before..].find('\n').unwrap_or(self.text.len() - before);
+        line <= LONGEST_LINE
+    }
+}
+
+/// The last place at or before `at` where `text` can be cut.
+fn floor(text: &str, at: usize) -> usize {
+    text.floor_char_boundary(at)
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+/// A diagnostic as miette draws it.
+#[derive(Debug)]
+struct Drawn<'d> {
+    message: String,
+    diagnostic: &'d Diagnostic,
+    source: Option<NamedSource<Arc<str>>>,
+}
+
+impl<'d> Drawn<'d> {
+    fn new(diagnostic: &'d Diagnostic) -> Self {
+        let place = diagnostic.place.as_ref();
+        let shown = place.filter(|place| place.is_on_a_short_line());
+        let message = match place {
+            Some(place) if shown.is_none() => {
+                format!("{}:{}:{}: {}", place.name, place.line, place.column, diagnostic.message)
+            }
+            _ => diagnostic.message.clone(),
+        };
+        Self {
+            message,
+            diagnostic,
+            source: shown.map(|place| NamedSource::new(&place.name, Arc::clone(&place.text))),
+        }
+    }
+}
+
+impl fmt::Display for Drawn<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Drawn<'_> {}
+
+impl miette::Diagnostic for Drawn<'_> {
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let help = self.diagnostic.help.as_ref()?;
+        Some(Box::new(help))
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.source.as_ref().map(|source| source as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let place = self.diagnostic.place.as_ref()?;
+        self.source.as_ref()?;
+        let label = LabeledSpan::new(Some(place.label.clone()), place.span.start, place.span.len());
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+/// How a report looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Style {
+    /// Whether to use colours.
+    pub colour: bool,
+    /// Columns.
+    pub width: usize,
+}
+
+impl Style {
+    /// No colour, 80 columns.
+    pub const PLAIN: Self = Self {
+        colour: false,
+        width: WIDTH,
+    };
+}
+
+/// Everything that is wrong with a scenario: one diagnostic or more.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// What is wrong, in the order of the file.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Report {
+    /// The report as people read it, each diagnostic with the line that it is about.
+    #[must_use]
+    pub fn render(&self, style: Style) -> String {
+        let theme = if style.colour {
+            GraphicalTheme::unicode()
+        } else {
+            GraphicalTheme::unicode_nocolor()
+        };
+        let handler = GraphicalReportHandler::new_themed(theme)
+            .with_width(style.width)
+            .with_links(false);
+        let mut text = String::new();
+        for diagnostic in &self.diagnostics {
+            // Writing to a string does not fail; were it to, the message alone still says what is wrong.
+            if handler.render_report(&mut text, &Drawn::new(diagnostic)).is_err() {
+                text.push_str(&diagnostic.message);
+            }
+        }
+        text
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(Style::PLAIN))
+    }
+}
+
+impl std::error::Error for Report {}
+
+impl From<Diagnostic> for Report {
+    fn from(diagnostic: Diagnostic) -> Self {
+        Self {
+            diagnostics: vec![diagnostic],
+        }
+    }
+}

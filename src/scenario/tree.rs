@@ -1,0 +1,397 @@
+//! The shape of RON text: which field stands where. Errors found by `ron`, or later, are placed with it. It reads any
+//! text, says all that is wrong with its form, and goes on.
+
+use super::lines::{line_of, swallows};
+use super::token::{Fault, Kind, Span, Token, tokens};
+
+/// How deep values may lie in each other. No scenario needs a tenth of it.
+pub const MAX_DEPTH: usize = 64;
+
+/// A value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Node {
+    /// All of it, a leading name included.
+    pub span: Span,
+    /// The name before the bracket, of a struct or of an enum's variant.
+    pub name: Option<Span>,
+    /// What is in its brackets; `None` if it has none.
+    pub group: Option<Group>,
+}
+
+/// What stands between two brackets.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Group {
+    /// Where the opening bracket stands.
+    pub opening: Span,
+    /// From after the opening bracket to before the closing one.
+    pub inside: Span,
+    /// The values in order.
+    pub items: Vec<Item>,
+}
+
+/// A value in a group, with its name if it is a field.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Item {
+    /// The field's name.
+    pub key: Option<Span>,
+    /// Its value.
+    pub value: Node,
+    /// Where it ends, the comma that follows included.
+    pub end: usize,
+    /// Whether a comma follows.
+    pub comma: bool,
+}
+
+impl Node {
+    /// Whether it is `( ... )` without a name.
+    pub fn is_bare_struct(&self) -> bool {
+        self.name.is_none() && self.group.is_some()
+    }
+}
+
+impl Item {
+    /// Where it begins.
+    pub fn start(&self) -> usize {
+        self.key.as_ref().map_or(self.value.span.start, |key| key.start)
+    }
+}
+
+/// Reads the shape of `text`. No node if there is no value at all.
+pub fn read(text: &str) -> (Option<Node>, Vec<Fault>) {
+    let (tokens, faults) = tokens(text);
+    let mut reader = Reader {
+        text,
+        tokens,
+        next: 0,
+        open: Vec::new(),
+        faults,
+    };
+    let broken = reader.faults.len();
+    let node = reader.value();
+    if node.is_some() && reader.faults.is_empty() && reader.peek().is_some() {
+        let span = reader.here();
+        reader.fault(span, "text after the end".into(), "remove it");
+    }
+    if broken > 0 {
+        // What a comment or a string that never ends has swallowed is not missing.
+        reader.faults.truncate(broken);
+    }
+    (node, reader.faults)
+}
+
+struct Reader<'t> {
+    text: &'t str,
+    tokens: Vec<Token>,
+    next: usize,
+    /// The brackets that are open.
+    open: Vec<char>,
+    faults: Vec<Fault>,
+}
+
+impl Reader<'_> {
+    fn peek(&self) -> Option<Kind> {
+        self.tokens.get(self.next).map(|token| token.kind)
+    }
+
+    fn peek_second(&self) -> Option<Kind> {
+        self.tokens.get(self.next + 1).map(|token| token.kind)
+    }
+
+    /// Where the next token stands, or the end of the text.
+    fn here(&self) -> Span {
+        let end = self.text.len();
+        self.tokens.get(self.next).map_or(end..end, |token| token.span.clone())
+    }
+
+    fn take(&mut self) -> Span {
+        let span = self.here();
+        self.next += 1;
+        span
+    }
+
+    /// Where the last token taken ends.
+    fn end(&self) -> usize {
+        let last = self.next.checked_sub(1).and_then(|index| self.tokens.get(index));
+        last.map_or(self.text.len(), |token| token.span.end)
+    }
+
+    fn fault(&mut self, span: Span, message: String, help: &str) {
+        self.faults.push(Fault {
+            span,
+            message,
+            help: help.into(),
+        });
+    }
+
+    fn value(&mut self) -> Option<Node> {
+        match self.peek()? {
+            Kind::Open(bracket) => Some(self.group(None, bracket)),
+            Kind::Word => {
+                let word = self.take();
+                let named = self.text[word.clone()].starts_with(|letter: char| letter.is_alphabetic() || letter == '_');
+                if named && self.peek() == Some(Kind::Open('(')) {
+                    Some(self.group(Some(word), '('))
+                } else {
+                    Some(leaf(word))
+                }
+            }
+            Kind::Quoted => Some(leaf(self.take())),
+            Kind::Close(_) | Kind::Comma | Kind::Colon | Kind::Stray(_) => {
+                let span = self.here();
+                let found = self.text[span.clone()].to_owned();
+                self.fault(
+                    span,
+                    format!("expected a value, found `{found}`"),
+                    "write a value, or remove the character",
+                );
+                None
+            }
+        }
+    }
+
+    fn group(&mut self, name: Option<Span>, bracket: char) -> Node {
+        let opening = self.take();
+        let start = name.as_ref().map_or(opening.start, |name| name.start);
+        let mut group = Group {
+            opening: opening.clone(),
+            inside: opening.end..self.text.len(),
+            items: Vec::new(),
+        };
+        self.open.push(bracket);
+        if self.open.len() > MAX_DEPTH {
+            self.fault(
+                opening,
+                format!("brackets lie deeper than {MAX_DEPTH}"),
+                "a scenario is at most a few levels deep",
+            );
+            self.next = self.tokens.len();
+        } else {
+            self.items(&opening, bracket, &mut group);
+        }
+        self.open.pop();
+        Node {
+            span: start..self.end().max(start),
+            name,
+            group: Some(group),
+        }
+    }
+
+    /// Reads items up to the bracket that closes the group, and that bracket.
+    fn items(&mut self, opening: &Span, bracket: char, group: &mut Group) {
+        loop {
+            match self.peek() {
+                None => {
+                    if self.faults.is_empty() {
+                        self.unclosed(opening, bracket, group);
+                    }
+                    return;
+                }
+                Some(Kind::Close(found)) => {
+                    group.inside.end = self.here().start;
+                    if found != closing(bracket) {
+                        self.wrong_close(opening, bracket, found);
+                        // It may close a group further out: then this one was left open.
+                        if self.open.iter().any(|outer| closing(*outer) == found) {
+                            return;
+                        }
+                    }
+                    self.take();
+                    return;
+                }
+                Some(_) => {
+                    if let Some(item) = self.item() {
+                        group.items.push(item);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The bracket to name is often one further in, which took a later bracket for its own: then a line within it begins
+    /// no further in than the line that it opens on.
+    fn unclosed(&mut self, opening: &Span, bracket: char, group: &Group) {
+        let help = format!("close it with `{}`", closing(bracket));
+        match swallows(self.text, group) {
+            Some((opening, swallowed)) => {
+                let line = line_of(self.text, swallowed);
+                let message = format!("`{}` is not closed before line {line}", &self.text[opening.clone()]);
+                self.fault(opening, message, &help);
+            }
+            None => self.fault(opening.clone(), format!("`{bracket}` is never closed"), &help),
+        }
+    }
+
+    fn wrong_close(&mut self, opening: &Span, bracket: char, found: char) {
+        let line = line_of(self.text, opening.start);
+        let message = format!("`{found}` does not close the `{bracket}` of line {line}");
+        let span = self.here();
+        self.fault(span, message, &format!("close it with `{}`", closing(bracket)));
+    }
+
+    fn item(&mut self) -> Option<Item> {
+        let key = self.key();
+        if let (Some(key), Some(Kind::Comma | Kind::Close(_)) | None) = (&key, self.peek()) {
+            let message = format!("`{}` has no value", &self.text[key.clone()]);
+            self.fault(key.clone(), message, "write one after the colon, or remove the field");
+            if self.peek() == Some(Kind::Comma) {
+                self.take();
+            }
+            return None;
+        }
+        let at = self.next;
+        let Some(value) = self.value() else {
+            // Whatever could not be a value is passed over, unless it ends the group.
+            if at == self.next && !matches!(self.peek(), Some(Kind::Close(_)) | None) {
+                self.take();
+            }
+            return None;
+        };
+        let mut item = Item {
+            key,
+            end: value.span.end,
+            value,
+            comma: false,
+        };
+        match self.peek() {
+            Some(Kind::Comma) => {
+                item.end = self.take().end;
+                item.comma = true;
+            }
+            Some(Kind::Close(_)) | None => {}
+            Some(_) => self.missing_comma(&item.value),
+        }
+        Some(item)
+    }
+
+    fn missing_comma(&mut self, value: &Node) {
+        let span = self.here();
+        let before = self.text[span.clone()].to_owned();
+        let after = &self.text[value.span.clone()];
+        let comma = if after.len() <= 40 && !after.contains('\n') {
+            format!("write `,` after `{after}`")
+        } else {
+            format!("write `,` before `{before}`")
+        };
+        let help = match self.peek_second() {
+            Some(Kind::Colon) => comma,
+            _ => format!("{comma}, or remove `{before}`; numbers have no units"),
+        };
+        self.fault(span, format!("missing `,` before `{before}`"), &help);
+    }
+
+    fn key(&mut self) -> Option<Span> {
+        if !matches!(self.peek(), Some(Kind::Word | Kind::Quoted)) {
+            return None;
+        }
+        match self.peek_second() {
+            Some(Kind::Colon) => {
+                let key = self.take();
+                self.take();
+                Some(key)
+            }
+            Some(Kind::Stray('=')) => {
+                let key = self.take();
+                let sign = self.take();
+                self.fault(sign, "`=` between a field and its value".into(), "write `:`");
+                Some(key)
+            }
+            _ => None,
+        }
+    }
+}
+
+fn leaf(span: Span) -> Node {
+    Node {
+        span,
+        name: None,
+        group: None,
+    }
+}
+
+/// The bracket that closes `bracket`.
+fn closing(bracket: char) -> char {
+    match bracket {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn faults(text: &str) -> Vec<(usize, String)> {
+        let found = read(text).1;
+        found
+            .into_iter()
+            .map(|fault| (fault.span.start, fault.message))
+            .collect()
+    }
+
+    #[test]
+    fn well_formed_text_has_no_faults() {
+        for text in [
+            "()",
+            "Scenario(a: 1, b: [(1, 2), (3, 4),], c: X(d: \"e\"),)",
+            "(a: {1: 2})",
+            "// q\n(a: None)",
+        ] {
+            assert_eq!(faults(text), [], "{text}");
+        }
+    }
+
+    #[test]
+    fn several_faults_are_found_at_once() {
+        assert_eq!(
+            faults("(a: 1 b: 2, c = 3, d: )"),
+            [
+                (6, "missing `,` before `b`".into()),
+                (14, "`=` between a field and its value".into()),
+                (19, "`d` has no value".into()),
+            ]
+        );
+    }
+
+    #[test]
+    fn an_open_bracket_is_named_where_it_opens() {
+        assert_eq!(
+            faults("(a: [1, 2)"),
+            [(9, "`)` does not close the `[` of line 1".into())]
+        );
+        assert_eq!(faults("S(a: 1"), [(1, "`(` is never closed".into())]);
+    }
+
+    #[test]
+    fn a_bracket_that_took_the_closing_one_of_another_is_found_by_indentation() {
+        let text = "S(\n    a: X(b: (1, 2),\n    c: 3,\n)\n";
+        assert_eq!(faults(text), [(11, "`(` is not closed before line 3".into())]);
+    }
+
+    #[test]
+    fn a_million_brackets_are_refused_and_not_followed() {
+        assert_eq!(read(&"(".repeat(1_000_000)).1.len(), 1);
+    }
+
+    fn nested(node: &Node, text: &str) -> bool {
+        let items = node.group.iter().flat_map(|group| &group.items);
+        text.get(node.span.clone()).is_some()
+            && items.into_iter().all(|item| {
+                node.span.start <= item.start()
+                    && item.value.span.end <= item.end
+                    && item.end <= node.span.end
+                    && nested(&item.value, text)
+            })
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_gives_nodes_that_lie_within_each_other(text in "[()\\[\\]{},:ab1\"'#/* \nü=-]{0,120}") {
+            if let (Some(node), _) = read(&text) {
+                prop_assert!(nested(&node, &text));
+            }
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! The loop itself.
+
+use tokio_util::sync::CancellationToken;
+
+use super::air::Air;
+use super::clock::WakeClock;
+use super::digest::Digest;
+use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams};
+use crate::geometry::Vec2;
+use crate::metrics::{Progress, Recorder, RunEnd, TrialRecord};
+use crate::motion::World;
+use crate::protocol::{CodecError, Input, Output, Protocol, Robot, Topic, Wake};
+
+const ROBOT: Purpose = Purpose::new("protocol.robot");
+
+/// Why a run stopped before its end.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// A robot's message could not be encoded, or its bytes not be decoded.
+    #[error("a message cannot cross the air: {0}")]
+    Codec(#[from] CodecError),
+    /// The codec made bytes that it does not read as a whole message.
+    #[error("the codec's own bytes on topic {} are not a whole message to its decoder", topic.0)]
+    Undecodable {
+        /// The message's topic.
+        topic: Topic,
+    },
+    /// The operating system refused the actors what they need.
+    #[error("actors cannot be started: {0}")]
+    Actors(#[source] std::io::Error),
+    /// The run was told to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// What can happen. Frames are not events: they wait in inboxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Event {
+    MotionTick,
+    Wake(ActorId),
+    Sample,
+    Observe,
+}
+
+impl EventKey for Event {
+    fn class(&self) -> u8 {
+        match self {
+            Self::MotionTick => 0,
+            Self::Wake(_) => 1,
+            Self::Sample => 2,
+            Self::Observe => 3,
+        }
+    }
+}
+
+type JobFor<P> = Job<Input<<P as Protocol>::Message>, Output<<P as Protocol>::Message>>;
+
+/// The fixed rhythms of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Rhythm {
+    /// From one control step of a robot to its next.
+    pub control_period: Span,
+    /// From one sample of connectivity and positions to the next; zero for none.
+    pub sample_interval: Span,
+    /// When the run ends at the latest.
+    pub time_limit: SimTime,
+    /// Whether arrivals wake robots.
+    pub wake_on_reception: bool,
+    /// Whether there is a mission whose completion ends the run.
+    pub has_mission: bool,
+}
+
+/// A run: the world, the air and the robots' clocks, around the queue of events.
+pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
+    rhythm: Rhythm,
+    queue: EventQueue<Event>,
+    driver: D,
+    world: World,
+    air: Air<P>,
+    recorder: Recorder,
+    digest: Digest,
+    clocks: Vec<WakeClock>,
+    wakes: Vec<u32>,
+    randomness: KeyedStreams,
+    batch: Vec<Box<JobFor<P>>>,
+    spare_jobs: Vec<Box<JobFor<P>>>,
+    reached: Vec<ActorId>,
+    positions: Vec<Vec2>,
+    events: u64,
+    steps: u64,
+}
+
+impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
+    /// A run in which robot i first wakes at `first_steps[i]`.
+    pub fn new(
+        rhythm: Rhythm,
+        driver: D,
+        world: World,
+        air: Air<P>,
+        recorder: Recorder,
+        streams: &Streams,
+        first_steps: &[SimTime],
+    ) -> Self {
+        let mut queue = EventQueue::with_capacity(first_steps.len() + 3);
+        queue.schedule(Event::MotionTick, SimTime::ZERO + world.tick());
+        if rhythm.sample_interval > Span::ZERO {
+            queue.schedule(Event::Sample, SimTime::ZERO);
+        }
+        if rhythm.has_mission {
+            queue.schedule(Event::Observe, SimTime::ZERO);
+        }
+        for (robot, &first) in first_steps.iter().enumerate() {
+            queue.schedule(Event::Wake(ActorId(robot as u32)), first);
+        }
+        Self {
+            rhythm,
+            queue,
+            driver,
+            world,
+            air,
+            recorder,
+            digest: Digest::new(),
+            clocks: first_steps.iter().map(|&first| WakeClock::new(first)).collect(),
+            wakes: vec![0; first_steps.len()],
+            randomness: streams.keyed(ROBOT),
+            batch: Vec::new(),
+            spare_jobs: Vec::new(),
+            reached: Vec::new(),
+            positions: Vec::new(),
+            events: 0,
+            steps: 0,
+        }
+    }
+
+    /// Runs to the end and returns what it leaves behind.
+    pub fn to_end(mut self, trial: u32, seed: u64, stop: &CancellationToken) -> Result<TrialRecord, RunError> {
+        let mut end = self.rhythm.time_limit;
+        while let Some((event, now)) = self.queue.peek() {
+            if now > self.rhythm.time_limit {
+                break;
+            }
+            self.events += 1;
+            match event {
+                Event::MotionTick => {
+                    if stop.is_cancelled() {
+                        return Err(RunError::Interrupted);
+                    }
+                    self.world.advance();
+                    self.queue.schedule(event, now + self.world.tick());
+                }
+                Event::Wake(_) => self.wake_all(now)?,
+                Event::Sample => {
+                    self.locate(now);
+                    self.recorder.sample(now, &self.positions);
+                    self.queue.schedule(event, now + self.rhythm.sample_interval);
+                }
+                Event::Observe => {
+                    self.locate(now);
+                    let progress = self.recorder.observe(self.steps, &self.positions);
+                    if matches!(progress, Progress::Complete { .. }) {
+                        end = now;
+                        break;
+                    }
+                    self.steps += 1;
+                    self.queue.schedule(event, now + self.rhythm.control_period);
+                }
+            }
+        }
+        Ok(self.finish(trial, seed, end))
+    }
+
+    /// Wakes every robot that is due at `now`.
+    fn wake_all(&mut self, now: SimTime) -> Result<(), RunError> {
+        while let Some((Event::Wake(robot), due)) = self.queue.peek() {
+            if due > now {
+                break;
+            }
+            self.queue.pop();
+            let job = self.prepare(now, robot);
+            self.batch.push(job);
+        }
+        self.events += self.batch.len() as u64 - 1;
+        self.driver.dispatch(&mut self.batch);
+        let mut batch = std::mem::take(&mut self.batch);
+        for mut job in batch.drain(..) {
+            self.apply(&mut job)?;
+            job.input.inbox.clear();
+            self.spare_jobs.push(job);
+        }
+        self.batch = batch;
+        if self.rhythm.wake_on_reception {
+            self.wake_reached();
+        }
+        Ok(())
+    }
+
+    /// Fills in what `robot` is told at `now`.
+    fn prepare(&mut self, now: SimTime, robot: ActorId) -> Box<JobFor<P>> {
+        let index = robot.index();
+        let wake = self.clocks[index].take_due(now, self.rhythm.control_period);
+        let random = self.randomness.at(robot.0, 0, self.wakes[index]);
+        self.wakes[index] += 1;
+        let pose = self.world.pose(robot, now);
+        let mut job = self.spare_jobs.pop().unwrap_or_else(|| {
+            Box::new(Job {
+                actor: robot,
+                now,
+                input: Input {
+                    wake,
+                    inbox: Vec::new(),
+                    pose,
+                    proximity: Vec::new(),
+                    random: random.clone(),
+                },
+                output: Output::default(),
+            })
+        });
+        job.actor = robot;
+        job.now = now;
+        let input = &mut job.input;
+        input.wake = wake;
+        input.pose = pose;
+        input.random = random;
+        input.proximity.clear();
+        if P::SENSES_PROXIMITY && wake == Wake::ControlStep {
+            self.world.proximity(robot, now, &mut input.proximity);
+        }
+        self.air.deliver(now, robot, &mut input.inbox, &mut self.recorder);
+        job.output.clear();
+        job
+    }
+
+    /// Lets a robot's answer take effect, and schedules its next wake.
+    fn apply(&mut self, job: &mut JobFor<P>) -> Result<(), RunError> {
+        let Job {
+            actor: robot,
+            now,
+            input,
+            output,
+        } = job;
+        let (robot, now) = (*robot, *now);
+        self.digest.wake(now, robot, input, output);
+        for note in output.notes.drain(..) {
+            self.recorder.note(robot, &note);
+        }
+        if let Some(velocity) = output.velocity {
+            self.world.command(robot, velocity);
+        }
+        if !output.broadcasts.is_empty() {
+            let messages = output.broadcasts.drain(..);
+            self.air
+                .broadcast(now, robot, messages, &self.world, &mut self.recorder, &mut self.digest)?;
+        }
+        let clock = &mut self.clocks[robot.index()];
+        for (id, due) in output.timers.drain(..) {
+            clock.set_timer(id, due, now);
+        }
+        if self.rhythm.wake_on_reception {
+            clock.set_arrival(self.air.next_arrival(robot));
+        }
+        self.queue.schedule(Event::Wake(robot), clock.next());
+        Ok(())
+    }
+
+    /// Brings forward the wakes of robots that frames were just sent to.
+    fn wake_reached(&mut self) {
+        self.air.take_reached(&mut self.reached);
+        for robot in self.reached.drain(..) {
+            let clock = &mut self.clocks[robot.index()];
+            let arrival = self.air.next_arrival(robot);
+            if arrival < clock.arrival() {
+                clock.set_arrival(arrival);
+                self.queue.schedule(Event::Wake(robot), clock.next());
+            }
+        }
+    }
+
+    fn locate(&mut self, now: SimTime) {
+        let Self {
+            positions,
+            world,
+            clocks,
+            ..
+        } = self;
+        positions.clear();
+        positions.extend((0..clocks.len() as u32).map(|robot| world.position(ActorId(robot), now)));
+    }
+
+    fn finish(mut self, trial: u32, seed: u64, end: SimTime) -> TrialRecord {
+        self.air.settle(end, &mut self.recorder);
+        let world = &self.world;
+        let poses = (0..self.clocks.len() as u32)
+            .map(|robot| world.pose(ActorId(robot), end))
+            .collect();
+        self.recorder.finish(RunEnd {
+            trial,
+            seed,
+            steps: end.as_nanos() / self.rhythm.control_period.as_nanos(),
+            simulated: end,
+            events: self.events,
+            digest: self.digest.finish(),
+            poses,
+        })
+    }
+}

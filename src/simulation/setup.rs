@@ -1,0 +1,147 @@
+//! What a run is made of, for those who bring their own protocol.
+
+use std::str::FromStr;
+
+use rand::RngExt as _;
+use tokio_util::sync::CancellationToken;
+
+use super::air::Air;
+use super::run::{Rhythm, Run, RunError};
+use crate::engine::{Actors, Driver, Inline, Purpose, SimTime, Span, Streams};
+use crate::geometry::Pose;
+use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};
+use crate::motion::{ArenaConfig, MotionConfig, World};
+use crate::protocol::control::{ControlConfig, PhaseConfig, WakeConfig};
+use crate::protocol::{Protocol, Robot};
+use crate::radio::{Medium, RadioConfig};
+
+const PHASE: Purpose = Purpose::new("control.phase");
+
+/// How robots are run. Both give the same results, byte for byte.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DriverKind {
+    /// A tokio task and a mailbox a robot.
+    #[default]
+    Actors,
+    /// Direct calls: faster, and easier to step through in a debugger.
+    Inline,
+}
+
+impl FromStr for DriverKind {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "actors" => Ok(Self::Actors),
+            "inline" => Ok(Self::Inline),
+            other => Err(format!("no driver is called `{other}`: use `actors` or `inline`")),
+        }
+    }
+}
+
+/// The world that robots are put into.
+#[derive(Clone, Debug, Default)]
+pub struct Setup {
+    /// Seed of every random stream.
+    pub seed: u64,
+    /// Number of the trial: other trials of the same seed draw other numbers.
+    pub trial: u32,
+    /// When the run ends at the latest.
+    pub time_limit: Span,
+    /// The arena.
+    pub arena: ArenaConfig,
+    /// How robots move.
+    pub motion: MotionConfig,
+    /// When robots wake.
+    pub control: ControlConfig,
+    /// The radio.
+    pub radio: RadioConfig,
+    /// What is measured.
+    pub metrics: MetricsConfig,
+    /// What counts as completion, if anything does.
+    pub mission: Option<Mission>,
+}
+
+impl Setup {
+    /// The random streams of this run.
+    #[must_use]
+    pub fn streams(&self) -> Streams {
+        Streams::new(self.seed, self.trial)
+    }
+
+    /// Puts `robots` at `poses` and runs them to the end, or until `stop` is cancelled.
+    ///
+    /// # Errors
+    /// If a message cannot cross the air, or the run is interrupted.
+    ///
+    /// # Panics
+    /// If there are not as many poses as robots.
+    pub fn run<P: Protocol>(
+        &self,
+        poses: Vec<Pose>,
+        robots: Vec<P>,
+        driver: DriverKind,
+        stop: &CancellationToken,
+    ) -> Result<TrialRecord, RunError> {
+        assert_eq!(poses.len(), robots.len(), "every robot needs a pose");
+        let robots = robots.into_iter().map(Robot).collect();
+        match driver {
+            DriverKind::Actors => self.run_with(poses, Actors::spawn(robots).map_err(RunError::Actors)?, stop),
+            DriverKind::Inline => self.run_with(poses, Inline::new(robots), stop),
+        }
+    }
+
+    fn run_with<P: Protocol, D: Driver<Robot<P>>>(
+        &self,
+        poses: Vec<Pose>,
+        driver: D,
+        stop: &CancellationToken,
+    ) -> Result<TrialRecord, RunError> {
+        let streams = self.streams();
+        let robots = poses.len();
+        let first_steps = self.first_steps(robots, &streams);
+        let world = World::new(&self.motion, &self.arena, poses, self.radio.range.get());
+        let rhythm = self.rhythm();
+        let air = Air::<P>::new(
+            Medium::new(&self.radio, &streams, robots),
+            robots,
+            rhythm.wake_on_reception,
+        );
+        let recorder = Recorder::new(self.layout::<P>(robots), &self.metrics);
+        Run::new(rhythm, driver, world, air, recorder, &streams, &first_steps).to_end(self.trial, self.seed, stop)
+    }
+
+    fn rhythm(&self) -> Rhythm {
+        Rhythm {
+            control_period: Span::from_secs(self.control.period.get()),
+            sample_interval: Span::from_secs(self.metrics.sample_interval.get()),
+            time_limit: SimTime::ZERO + self.time_limit,
+            wake_on_reception: self.control.wake == WakeConfig::OnReception,
+            has_mission: self.mission.is_some(),
+        }
+    }
+
+    fn layout<P: Protocol>(&self, robots: usize) -> Layout {
+        Layout {
+            robots,
+            topics: P::TOPICS.len(),
+            roles: P::ROLES.len(),
+            header_bytes: self.radio.header_bytes,
+            radio_range: self.radio.range.get(),
+            control_period: Span::from_secs(self.control.period.get()),
+            mission: self.mission.clone(),
+        }
+    }
+
+    /// When each robot takes its first control step.
+    fn first_steps(&self, robots: usize, streams: &Streams) -> Vec<SimTime> {
+        let phases = streams.keyed(PHASE);
+        let period = Span::from_secs(self.control.period.get()).as_nanos();
+        (0..robots as u32)
+            .map(|robot| match self.control.phase {
+                PhaseConfig::Together => SimTime::ZERO,
+                PhaseConfig::Random => SimTime::from_nanos(phases.at(robot, 0, 0).random_range(0..period)),
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,90 @@
+//! From a scenario to the record of one of its trials.
+
+use std::rc::Rc;
+
+use tokio_util::sync::CancellationToken;
+
+use super::run::RunError;
+use super::setup::{DriverKind, Setup};
+use crate::engine::{ActorId, Span};
+use crate::metrics::{Mission, MissionTarget, TrialRecord};
+use crate::motion::{DeployError, deploy};
+use crate::protocol::backbone::{self, BackboneConfig};
+use crate::protocol::heartbeat::{Heartbeat, Settings};
+use crate::scenario::{ProtocolConfig, Scenario};
+
+/// Why a trial has no record.
+#[derive(Debug, thiserror::Error)]
+pub enum TrialError {
+    /// The robots found no room.
+    #[error(transparent)]
+    Deploy(#[from] DeployError),
+    /// The run stopped before its end.
+    #[error(transparent)]
+    Run(#[from] RunError),
+}
+
+/// Runs trial number `trial` of `scenario`, until `stop` is cancelled.
+///
+/// # Errors
+/// If the robots find no room, or the run stops before its end.
+pub fn run_trial(
+    scenario: &Scenario,
+    trial: u32,
+    driver: DriverKind,
+    stop: &CancellationToken,
+) -> Result<TrialRecord, TrialError> {
+    let mut setup = setup(scenario, trial);
+    let body_radius = scenario.motion.body_radius.get();
+    let swarm = &scenario.swarm;
+    let poses = deploy(
+        &swarm.deploy,
+        &scenario.arena,
+        swarm.robots,
+        body_radius,
+        &setup.streams(),
+    )?;
+    let period = Span::from_secs(scenario.control.period.get());
+    let record = match &scenario.protocol {
+        ProtocolConfig::Backbone(config) => {
+            let robots = backbone::swarm(config, &scenario.gossip, &scenario.detector, period, &poses);
+            setup.mission = robots.first().map(|robot| mission(config, robot.root()));
+            setup.run(poses, robots, driver, stop)
+        }
+        ProtocolConfig::Heartbeat => {
+            let settings = Rc::new(Settings::new(&scenario.gossip, &scenario.detector, period));
+            let robots = poses.iter().map(|_| Heartbeat::new(Rc::clone(&settings))).collect();
+            setup.run(poses, robots, driver, stop)
+        }
+    }?;
+    Ok(record)
+}
+
+fn setup(scenario: &Scenario, trial: u32) -> Setup {
+    Setup {
+        seed: scenario.seed,
+        trial,
+        time_limit: Span::from_secs(scenario.time_limit.get()),
+        arena: scenario.arena.clone(),
+        motion: scenario.motion.clone(),
+        control: scenario.control.clone(),
+        radio: scenario.radio.clone(),
+        metrics: scenario.metrics.clone(),
+        mission: None,
+    }
+}
+
+/// What the metrics judge: every target held, with its links (paper eqs. 2 to 5).
+fn mission(config: &BackboneConfig, root: ActorId) -> Mission {
+    let targets = config.targets().into_iter().map(|(position, links)| MissionTarget {
+        position,
+        links: u32::from(links),
+    });
+    Mission {
+        targets: targets.collect(),
+        reach: config.movement_threshold.get(),
+        link_limit: config.critical_distance.get(),
+        root,
+        worker_role: backbone::Role::Worker.index(),
+    }
+}

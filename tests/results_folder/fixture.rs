@@ -1,0 +1,167 @@
+//! Made-up trials: quick, and with every kind of value that a record can hold.
+
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+use desim::engine::{ActorId, SimTime, Span};
+use desim::experiment::{Ending, Experiment, ExperimentError, Parts};
+use desim::export::{Folder, Manifest, Pictures, write};
+use desim::geometry::{Pose, Vec2};
+use desim::metrics::{
+    ConnectivitySample, LatencyHistogram, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord, Volume,
+};
+use desim::scenario::{Scenario, parse};
+use tokio_util::sync::CancellationToken;
+
+const ROBOTS: u32 = 9;
+const SAMPLES: u64 = 12;
+
+/// A scenario that no made-up trial looks at, for its names, targets and number of trials.
+pub fn scenario(trials: u32) -> Scenario {
+    let text = format!(
+        "Scenario(name: \"made-up\", trials: {trials}, time_limit: 60.0, \
+         swarm: (robots: {ROBOTS}, deploy: Cluster(radius: 1.0)), \
+         protocol: Backbone(targets: Ring(count: 2, radius: 3.0)))"
+    );
+    parse("made-up.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+/// Trial number `trial`: a root in the middle, two chains to two targets, every fifth trial censored.
+pub fn record(trial: u32) -> TrialRecord {
+    let odd = f64::from(trial) * 0.1 + 0.2;
+    let mut latency = LatencyHistogram::default();
+    (1..40).for_each(|n| latency.record(Span::from_nanos(1_000_003 * n * u64::from(trial + 1))));
+    TrialRecord {
+        trial,
+        seed: 1,
+        outcome: if trial % 5 == 4 {
+            Outcome::Censored
+        } else {
+            Outcome::Completed {
+                step: 100 + 7 * u64::from(trial),
+            }
+        },
+        steps: 600,
+        control_period: Span::from_secs(0.1),
+        simulated: SimTime::from_secs(60.0),
+        events: 12_345,
+        digest: u128::MAX - u128::from(trial),
+        ledger: (0..4).map(|topic| fates(topic, trial)).collect(),
+        traffic: (0..ROBOTS)
+            .flat_map(|robot| (0..2).map(move |topic| traffic(robot, topic, trial)))
+            .collect(),
+        latency,
+        suspicions: u64::from(trial),
+        connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
+        robots: (0..ROBOTS).map(|robot| state(robot, odd)).collect(),
+        trajectories: (0..SAMPLES)
+            .map(|sample| (SimTime::from_secs(sample as f64 * 5.0), places(sample)))
+            .collect(),
+    }
+}
+
+fn fates(topic: u64, trial: u32) -> TopicFates {
+    let lost = [20 + topic + u64::from(trial)];
+    TopicFates {
+        offered: 103 + topic + u64::from(trial),
+        delivered: 80,
+        lost,
+        in_flight: 3,
+    }
+}
+
+fn traffic(robot: u32, topic: u8, trial: u32) -> TrafficRow {
+    let volume = |frames: u64| Volume {
+        frames,
+        payload_bytes: 4 * frames,
+        header_bytes: 5 * frames,
+    };
+    TrafficRow {
+        robot: ActorId(robot),
+        role: role(robot),
+        topic,
+        sent: volume(600),
+        received: volume(u64::from(4000 + 10 * robot + trial)),
+        lost: [volume(u64::from(robot))],
+    }
+}
+
+fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {
+    let lambda2 = if sample == 7 { 0.0 } else { odd / (sample + 1) as f64 };
+    ConnectivitySample {
+        at: SimTime::from_secs(sample as f64 * 5.0),
+        lambda2,
+        components: if sample == 7 { 2 } else { 1 },
+        roles: vec![2, 1, 4, 2],
+        links: vec![1, u32::from(sample > 3)],
+    }
+}
+
+/// Robot 0 is the root, 1 to 4 relay, 5 and 6 are workers, the others free.
+fn role(robot: u32) -> u8 {
+    match robot {
+        0 => 1,
+        1..=4 => 2,
+        5 | 6 => 3,
+        _ => 0,
+    }
+}
+
+fn state(robot: u32, odd: f64) -> RobotState {
+    let side = if robot % 2 == 1 { 1.0 } else { -1.0 };
+    let (x, target, parents) = match robot {
+        0 => (0.0, None, vec![]),
+        1 | 2 => (side, Some(robot as u16 - 1), vec![ActorId(0)]),
+        3 | 4 => (side * 2.0, Some(robot as u16 - 3), vec![ActorId(robot - 2)]),
+        5 | 6 => (side * 3.0, Some(robot as u16 - 5), vec![ActorId(robot - 2), ActorId(0)]),
+        _ => (side * 0.5, None, vec![]),
+    };
+    let position = Vec2::new(x, odd * f64::from(robot) / 30.0);
+    RobotState {
+        pose: Pose { position, heading: odd },
+        role: role(robot),
+        target,
+        parents,
+    }
+}
+
+fn places(sample: u64) -> Vec<[f32; 2]> {
+    let grown = sample as f32 / SAMPLES as f32;
+    (0..ROBOTS)
+        .map(|robot| state(robot, 0.1).pose.position)
+        .map(|at| [at.x as f32 * grown, at.y as f32])
+        .collect()
+}
+
+/// What keeps a made-up trial from being made up.
+#[derive(Debug, thiserror::Error)]
+#[error("given up")]
+pub struct GivenUp;
+
+/// Runs `scenario` in `dir` as the command does, trial by trial with `run`.
+pub fn run(
+    dir: &Path,
+    scenario: &Scenario,
+    jobs: usize,
+    stop: &CancellationToken,
+    run: impl Fn(u32) -> Result<TrialRecord, GivenUp> + Sync,
+) -> Result<Ending, ExperimentError<GivenUp>> {
+    let folder = Folder::new(dir.to_owned());
+    let parts = Parts::open(&folder.trials())?;
+    folder
+        .declare(&Manifest::new(scenario))
+        .expect("the folder can be written");
+    let jobs = NonZeroUsize::new(jobs).expect("at least one thread");
+    let experiment = Experiment {
+        trials: scenario.trials,
+        seed: scenario.seed,
+        jobs,
+        parts: &parts,
+        stop,
+    };
+    let ending = experiment.run(run, |_| ())?;
+    if ending == Ending::Finished {
+        write(&folder, parts, scenario, Pictures::First).expect("the results can be written");
+    }
+    Ok(ending)
+}

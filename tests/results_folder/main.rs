@@ -1,0 +1,6 @@
+//! What `desim scenario` leaves behind: the results folder, its resumption, its refusals, its report, its exit status.
+
+mod command;
+mod fixture;
+mod folder;
+mod report;
