@@ -153,22 +153,29 @@ impl Mission {
     }
 }
 
+/// The shortest springs, in safe distances: robots have bodies, even where a target is next to the root.
+const SHORTEST_SPRING: f64 = 0.25;
+
 /// The `links` chains to target number `target`, which lies at `displacement` from the root.
 fn parallel_chains(config: &BackboneConfig, target: u8, displacement: Vec2, links: u8) -> impl Iterator<Item = Chain> {
     let safe = config.safe_distance.get();
     let distance = displacement.norm();
-    let relays = relays_needed(distance, config.movement_threshold.get(), safe);
-    let even = distance / (relays + 1) as f64;
-    let rest = safe.min(config.motion.taut_ratio.get() * even);
+    let needed = relays_needed(distance, config.movement_threshold.get(), safe);
     let gaps = f64::from(links.saturating_sub(1));
     // However many the chains, the outermost stay within a spring's reach of each other.
     let spacing = config.motion.lane_spacing.get().min(safe / gaps.max(1.0));
-    (0..links).map(move |link| Chain {
-        target,
-        relays,
-        rest,
-        forward: direction(displacement),
-        lane: (f64::from(link) - gaps / 2.0) * spacing,
+    let taut = config.motion.taut_ratio.get();
+    (0..links).map(move |link| {
+        // Only one chain can be the worker's own link to the root: the others need a relay to be disjoint from it.
+        let relays = needed.max(usize::from(link > 0));
+        let even = distance / (relays + 1) as f64;
+        Chain {
+            target,
+            relays,
+            rest: (taut * even).clamp(SHORTEST_SPRING * safe, safe),
+            forward: direction(displacement),
+            lane: (f64::from(link) - gaps / 2.0) * spacing,
+        }
     })
 }
 
@@ -290,6 +297,15 @@ mod tests {
         let lanes: Vec<f64> = (4..7).map(|number| mission.chain(number).lane).collect();
         assert_eq!(lanes, [-0.35, 0.0, 0.35]);
         assert!(mission.has_chain(12) && !mission.has_chain(13) && !mission.has_chain(0));
+    }
+
+    #[test]
+    fn all_chains_but_one_to_a_near_target_have_a_relay_so_that_they_are_disjoint() {
+        let config: BackboneConfig = ron::from_str("(targets: Ring(count: 1, radius: 1.2, links: 3))").unwrap();
+        let relays: Vec<usize> = parallel_chains(&config, 0, Vec2::new(1.2, 0.0), 3)
+            .map(|chain| chain.relays)
+            .collect();
+        assert_eq!(relays, [0, 1, 1]);
     }
 
     #[test]

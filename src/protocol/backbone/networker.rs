@@ -113,7 +113,7 @@ impl Networker {
             && self.need(view)
             && self.outer.len() < chain.relays
             && view.expands(self.slot.chain)
-            && view.way_to_root().norm() >= view.parameters().recruit_ratio * chain.rest
+            && self.slot.is_out_enough(view)
     }
 
     /// Heads for its place beside its child.

@@ -18,6 +18,10 @@ use super::view::View;
 /// spring length: from behind the root, springs would push it the wrong way.
 const AHEAD: f64 = 0.15;
 
+/// How far behind its child a joiner goes, as a share of its chain's spring length: less than all of it, for the child
+/// moves on, and a joiner that is farther out has less of the cluster to get through.
+const BEHIND: f64 = 0.5;
+
 /// A robot's place for one parent. A worker has one a link, a networker has one.
 #[derive(Debug)]
 pub struct Slot {
@@ -92,6 +96,12 @@ impl Slot {
     #[must_use]
     pub fn is_at_root(&self, view: &View<'_>) -> bool {
         self.parent == view.mission.root
+    }
+
+    /// Whether the robot is far enough from the root for a relay between the two.
+    #[must_use]
+    pub fn is_out_enough(&self, view: &View<'_>) -> bool {
+        view.way_to_root().norm() >= view.parameters().recruit_ratio * view.mission.chain(self.chain).rest
     }
 
     /// Does what a control step asks for: drops what is over, swaps in a joiner that is in place, and recruits where one
@@ -202,11 +212,11 @@ impl Slot {
     }
 }
 
-/// Where a joiner of `chain` goes: on the way from the root at `origin` to its child at `child`, a spring's length before
-/// it, but well ahead of the root; and over to its chain's lane, so that chains need not cross.
+/// Where a joiner of `chain` goes: on the way from the root at `origin` to its child at `child`, well ahead of the root,
+/// and over to its chain's lane, so that chains need not cross.
 #[must_use]
 pub fn joining_place(origin: Vec2, child: Vec2, chain: &Chain) -> Vec2 {
     let way = child - origin;
-    let ahead = (way.norm() - chain.rest).clamp(2.0 * AHEAD * chain.rest, chain.rest);
+    let ahead = (way.norm() - BEHIND * chain.rest).clamp(2.0 * AHEAD * chain.rest, chain.rest);
     origin + direction(way) * ahead + chain.left() * chain.lane_at(ahead)
 }
