@@ -16,6 +16,9 @@ mod strand;
 mod view;
 mod worker;
 
+#[cfg(test)]
+mod tests;
+
 use std::rc::Rc;
 
 pub use codec::BackboneCodec;
