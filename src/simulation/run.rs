@@ -87,6 +87,7 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     reached: Vec<ActorId>,
     positions: Vec<Vec2>,
     events: u64,
+    batches: u64,
     steps: u64,
 }
 
@@ -128,6 +129,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             reached: Vec::new(),
             positions: Vec::new(),
             events: 0,
+            batches: 0,
             steps: 0,
         }
     }
@@ -169,15 +171,16 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         Ok(self.finish(trial, seed, end))
     }
 
-    /// Wakes every robot that is due at `now`.
+    /// Wakes every robot that is due at `now`, once. One that is due twice stays in the queue for the next batch.
     fn wake_all(&mut self, now: SimTime) -> Result<(), RunError> {
-        while let Some((Event::Wake(robot), due)) = self.queue.peek() {
-            if due > now {
+        self.batches += 1;
+        while let Some((event @ Event::Wake(robot), due)) = self.queue.peek() {
+            if due > now || !self.clocks[robot.index()].join(self.batches) {
                 break;
             }
-            self.queue.pop();
             let job = self.prepare(now, robot);
             self.batch.push(job);
+            self.queue.schedule(event, self.clocks[robot.index()].next());
         }
         self.events += self.batch.len() as u64 - 1;
         self.driver.dispatch(&mut self.batch);
@@ -226,6 +229,9 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             self.world.proximity(robot, now, &mut input.proximity);
         }
         self.air.deliver(now, robot, &mut input.inbox, &mut self.recorder);
+        if self.rhythm.wake_on_reception {
+            self.clocks[index].set_arrival(self.air.next_arrival(robot));
+        }
         job.output.clear();
         job
     }
@@ -251,14 +257,13 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             self.air
                 .broadcast(now, robot, messages, &self.world, &mut self.recorder, &mut self.digest)?;
         }
-        let clock = &mut self.clocks[robot.index()];
-        for (id, due) in output.timers.drain(..) {
-            clock.set_timer(id, due, now);
+        if !output.timers.is_empty() {
+            let clock = &mut self.clocks[robot.index()];
+            for (id, due) in output.timers.drain(..) {
+                clock.set_timer(id, due, now);
+            }
+            self.queue.schedule(Event::Wake(robot), clock.next());
         }
-        if self.rhythm.wake_on_reception {
-            clock.set_arrival(self.air.next_arrival(robot));
-        }
-        self.queue.schedule(Event::Wake(robot), clock.next());
         Ok(())
     }
 
