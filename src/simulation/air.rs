@@ -105,10 +105,19 @@ impl<P: Protocol> Air<P> {
             message,
         });
         let Self { medium, arrivals, .. } = self;
-        medium.transmit(now, sender, self.listeners.iter().copied(), |receiver, fate| match fate {
-            Fate::Arrives { at, displacement } => arrivals.push(Arrival { receiver, at, displacement }),
-            Fate::Lost(cause) => recorder.lost(receiver, topic, cause, payload_bytes),
-        });
+        medium.transmit(
+            now,
+            sender,
+            self.listeners.iter().copied(),
+            |receiver, fate| match fate {
+                Fate::Arrives { at, displacement } => arrivals.push(Arrival {
+                    receiver,
+                    at,
+                    displacement,
+                }),
+                Fate::Lost(cause) => recorder.lost(receiver, topic, cause, payload_bytes),
+            },
+        );
         for arrival in self.arrivals.drain(..) {
             if self.tell_reached {
                 self.reached.push(arrival.receiver);

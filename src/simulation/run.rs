@@ -25,9 +25,9 @@ pub enum RunError {
         /// The message's topic.
         topic: Topic,
     },
-    /// The operating system refused the actors what they need.
-    #[error("actors cannot be started: {0}")]
-    Actors(#[source] std::io::Error),
+    /// The operating system refused the robots' runtime what it needs.
+    #[error("the robots cannot be started: {0}")]
+    Runtime(#[source] std::io::Error),
     /// The run was told to stop.
     #[error("interrupted")]
     Interrupted,
@@ -135,7 +135,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     }
 
     /// Runs to the end and returns what it leaves behind.
-    pub fn to_end(mut self, trial: u32, seed: u64, stop: &CancellationToken) -> Result<TrialRecord, RunError> {
+    pub async fn to_end(mut self, trial: u32, seed: u64, stop: &CancellationToken) -> Result<TrialRecord, RunError> {
         let mut end = self.rhythm.time_limit;
         while let Some((event, now)) = self.queue.peek() {
             if now > self.rhythm.time_limit {
@@ -150,7 +150,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                     self.world.advance();
                     self.queue.schedule(event, now + self.world.tick());
                 }
-                Event::Wake(_) => self.wake_all(now)?,
+                Event::Wake(_) => self.wake_all(now).await?,
                 Event::Sample => {
                     self.locate(now);
                     self.recorder.sample(now, &self.positions);
@@ -172,7 +172,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     }
 
     /// Wakes every robot that is due at `now`, once. One that is due twice stays in the queue for the next batch.
-    fn wake_all(&mut self, now: SimTime) -> Result<(), RunError> {
+    async fn wake_all(&mut self, now: SimTime) -> Result<(), RunError> {
         self.batches += 1;
         while let Some((event @ Event::Wake(robot), due)) = self.queue.peek() {
             if due > now || !self.clocks[robot.index()].join(self.batches) {
@@ -183,7 +183,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             self.queue.schedule(event, self.clocks[robot.index()].next());
         }
         self.events += self.batch.len() as u64 - 1;
-        self.driver.dispatch(&mut self.batch);
+        self.driver.dispatch(&mut self.batch).await;
         let mut batch = std::mem::take(&mut self.batch);
         for mut job in batch.drain(..) {
             self.apply(&mut job)?;
