@@ -20,7 +20,10 @@ fn run(scenario: &Scenario, trial: u32, driver: DriverKind) -> TrialRecord {
 fn assert_same_under_both_drivers(scenario: &Scenario) {
     let actors = run(scenario, 0, DriverKind::Actors);
     let inline = run(scenario, 0, DriverKind::Inline);
-    assert!(actors.ledger.iter().any(|topic| topic.delivered > 0), "nothing was said, so nothing is shown");
+    assert!(
+        actors.ledger.iter().any(|topic| topic.delivered > 0),
+        "nothing was said, so nothing is shown"
+    );
     assert_eq!(actors.digest, inline.digest);
     assert_eq!(actors, inline);
 }
@@ -66,7 +69,10 @@ fn another_seed_or_another_trial_is_another_run() {
 #[test]
 fn waking_robots_for_each_reception_changes_when_they_read_and_not_what_arrives() {
     let waiting = scenario("loss20.ron", &["time_limit=20.0", "protocol=Heartbeat"]);
-    let woken = scenario("loss20.ron", &["time_limit=20.0", "protocol=Heartbeat", "control.wake=OnReception"]);
+    let woken = scenario(
+        "loss20.ron",
+        &["time_limit=20.0", "protocol=Heartbeat", "control.wake=OnReception"],
+    );
     let (waiting, woken) = (run(&waiting, 0, DriverKind::Inline), run(&woken, 0, DriverKind::Inline));
     assert_eq!(waiting.ledger, woken.ledger);
     assert_eq!(waiting.latency, woken.latency);

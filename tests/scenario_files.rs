@@ -31,7 +31,9 @@ fn with(overrides: &[&str]) -> Scenario {
 /// What a person sees of `BASE` with `from` changed to `to`.
 fn shown(from: &str, to: &str) -> String {
     assert!(BASE.contains(from));
-    read(&BASE.replace(from, to), &[]).expect_err("the scenario is wrong").to_string()
+    read(&BASE.replace(from, to), &[])
+        .expect_err("the scenario is wrong")
+        .to_string()
 }
 
 fn refused(overrides: &[&str]) -> String {
@@ -44,7 +46,11 @@ fn every_shipped_scenario_is_well_and_begins_with_its_question() {
         let text = fs::read_to_string(&path).unwrap();
         let scenario = load(&path, &[]).unwrap_or_else(|report| panic!("{report}"));
         assert_eq!(path.file_stem().unwrap().to_str(), Some(scenario.name.as_str()));
-        assert!(question(&text).is_some_and(|question| question.ends_with('?')), "{}", path.display());
+        assert!(
+            question(&text).is_some_and(|question| question.ends_with('?')),
+            "{}",
+            path.display()
+        );
     }
 }
 
@@ -96,7 +102,10 @@ fn an_override_sets_a_field_that_the_file_has_with_or_without_the_names_of_varia
         let ProtocolConfig::Backbone(backbone) = with(&[given]).protocol else {
             panic!("the protocol has changed");
         };
-        assert!(matches!(backbone.targets, TargetsConfig::Ring { count: 4, links: 3, .. }));
+        assert!(matches!(
+            backbone.targets,
+            TargetsConfig::Ring { count: 4, links: 3, .. }
+        ));
     }
     assert_eq!(with(&["swarm.robots=60"]).swarm.robots, 60);
     let LossConfig::Bernoulli(loss) = with(&["radio.loss.Bernoulli=0.3"]).radio.loss else {
@@ -118,7 +127,10 @@ fn an_override_sets_a_field_that_the_file_leaves_out_and_keeps_the_defaults_arou
 
 #[test]
 fn an_override_replaces_a_whole_value_and_the_last_one_counts() {
-    let scenario = with(&["radio.latency=Constant(0.3)", "radio.latency=LogNormal(median: 0.02, sigma: 0.5)"]);
+    let scenario = with(&[
+        "radio.latency=Constant(0.3)",
+        "radio.latency=LogNormal(median: 0.02, sigma: 0.5)",
+    ]);
     assert!(matches!(scenario.radio.latency, LatencyConfig::LogNormal { .. }));
     assert_eq!(with(&["name=other"]).name, "other");
     assert_eq!(with(&["name=\"other\""]).name, "other");
@@ -133,7 +145,14 @@ fn an_override_can_mend_what_the_file_lacks() {
 
 #[test]
 fn an_override_cannot_break_out_of_its_place() {
-    for given in ["trials=1, seed: 2", "trials=1)", "trials=1 // (", "trials=(1", "trials=\"", "trials=/*"] {
+    for given in [
+        "trials=1, seed: 2",
+        "trials=1)",
+        "trials=1 // (",
+        "trials=(1",
+        "trials=\"",
+        "trials=/*",
+    ] {
         match read(BASE, &[given]) {
             Ok(scenario) => assert_eq!((scenario.trials, scenario.seed), (1, 1), "{given}"),
             Err(report) => assert!(report.to_string().contains("--set"), "{report}"),
@@ -191,7 +210,11 @@ fn a_scenario_beyond_the_means_of_a_machine_is_refused() {
 #[test]
 fn a_file_that_cannot_be_read_is_named() {
     let report = load(&PathBuf::from("scenarios/none.ron"), &[]).unwrap_err();
-    assert!(report.diagnostics[0].message.starts_with("scenarios/none.ron: cannot be read"));
+    assert!(
+        report.diagnostics[0]
+            .message
+            .starts_with("scenarios/none.ron: cannot be read")
+    );
     assert!(load(&PathBuf::from("scenarios"), &[]).is_err());
 }
 
@@ -201,9 +224,18 @@ fn text_that_is_not_utf8_is_refused_at_its_first_bad_byte() {
     let path = folder.path().join("bad.ron");
     fs::write(&path, b"// \xff\nScenario()").unwrap();
     let report = load(&path, &[]).unwrap_err();
-    assert_eq!(report.diagnostics[0].place.as_ref().map(|place| (place.line, place.column)), Some((1, 4)));
+    assert_eq!(
+        report.diagnostics[0]
+            .place
+            .as_ref()
+            .map(|place| (place.line, place.column)),
+        Some((1, 4))
+    );
     fs::write(&path, [b"\xef\xbb\xbf", BASE.replace('\n', "\r\n").as_bytes()].concat()).unwrap();
-    assert!(load(&path, &[]).is_ok(), "a byte order mark and carriage returns do no harm");
+    assert!(
+        load(&path, &[]).is_ok(),
+        "a byte order mark and carriage returns do no harm"
+    );
 }
 
 #[test]
@@ -268,7 +300,10 @@ fn the_mistake_of_a_model_without_its_number() {
 
 #[test]
 fn the_mistake_of_too_many_brackets() {
-    insta::assert_snapshot!(shown("Ring(count: 4, radius: 4.5, links: 2)", "Ring((count: 4, radius: 4.5, links: 2))"));
+    insta::assert_snapshot!(shown(
+        "Ring(count: 4, radius: 4.5, links: 2)",
+        "Ring((count: 4, radius: 4.5, links: 2))"
+    ));
 }
 
 #[test]

@@ -71,7 +71,9 @@ fn write_resolved(text: &str, scenario: &Scenario, out: &mut dyn Write) -> io::R
 }
 
 fn write_line(file: &Path, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
-    let Scenario { name, trials, swarm, .. } = scenario;
+    let Scenario {
+        name, trials, swarm, ..
+    } = scenario;
     let counted = |count: u32, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let (trials, robots) = (counted(*trials, "trial"), counted(swarm.robots, "robot"));
     writeln!(out, "ok {}: {name}, {trials}, {robots}", file.display())

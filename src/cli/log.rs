@@ -8,6 +8,9 @@ use tracing_subscriber::EnvFilter;
 pub fn to_stderr() {
     if let Ok(directives) = std::env::var("DESIM_LOG") {
         let filter = EnvFilter::builder().parse_lossy(directives);
-        tracing_subscriber::fmt().with_env_filter(filter).with_writer(io::stderr).init();
+        tracing_subscriber::fmt()
+            .with_env_filter(filter)
+            .with_writer(io::stderr)
+            .init();
     }
 }

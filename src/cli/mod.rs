@@ -76,7 +76,11 @@ pub fn run(command: Command) -> Result<(), Failure> {
     let mut out = io::stdout();
     match command {
         Command::Scenario(arguments) => scenario::run(&arguments),
-        Command::Check { files, overrides, resolved } => match check::check(&files, &overrides, resolved, &mut out)? {
+        Command::Check {
+            files,
+            overrides,
+            resolved,
+        } => match check::check(&files, &overrides, resolved, &mut out)? {
             true => Ok(()),
             false => Err(Failure::Shown),
         },

@@ -22,13 +22,21 @@ impl Progress {
     /// Never: the layout is one that indicatif reads.
     #[must_use]
     pub fn start(trials: u32, finished: u32, quiet: bool) -> Self {
-        let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+        let target = if quiet {
+            ProgressDrawTarget::hidden()
+        } else {
+            ProgressDrawTarget::stderr()
+        };
         let bar = ProgressBar::with_draw_target(Some(trials.into()), target);
         bar.set_style(ProgressStyle::with_template(LAYOUT).expect("the layout is well formed"));
         bar.set_position(finished.into());
         bar.reset_eta();
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self { bar, start: Instant::now(), simulated_s: 0.0 }
+        Self {
+            bar,
+            start: Instant::now(),
+            simulated_s: 0.0,
+        }
     }
 
     /// Counts a trial.

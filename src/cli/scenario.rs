@@ -121,7 +121,11 @@ impl From<Drawn> for Pictures {
 /// If the input is wrong, the run fails or is interrupted, or the results cannot be written.
 pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
     let text = contents(&arguments.file)?;
-    let scenario = parse(&arguments.file.display().to_string(), &text, &check::all(&arguments.settings())?)?;
+    let scenario = parse(
+        &arguments.file.display().to_string(),
+        &text,
+        &check::all(&arguments.settings())?,
+    )?;
     let default_out = || PathBuf::from("results").join(&scenario.name);
     let folder = Folder::new(arguments.out.clone().unwrap_or_else(default_out));
     let (summary, manifest) = match finished(&folder, &scenario, arguments.force)? {
@@ -132,7 +136,16 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
         None => simulate(&folder, &scenario, arguments)?,
     };
     let control_period_s = scenario.control.period.get();
-    print(&Finished { question: question(&text), control_period_s, folder, summary, manifest }, arguments)
+    print(
+        &Finished {
+            question: question(&text),
+            control_period_s,
+            folder,
+            summary,
+            manifest,
+        },
+        arguments,
+    )
 }
 
 impl ScenarioArguments {
@@ -189,7 +202,10 @@ fn simulate(
     let experiment = Experiment {
         trials: scenario.trials,
         seed: scenario.seed,
-        jobs: arguments.jobs.or_else(|| thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN),
+        jobs: arguments
+            .jobs
+            .or_else(|| thread::available_parallelism().ok())
+            .unwrap_or(NonZeroUsize::MIN),
         parts: &parts,
         stop: &stop,
     };
@@ -227,7 +243,10 @@ fn leave(folder: &Folder, experiment: &Experiment, scenario: &Scenario) -> Resul
 
 fn failure(error: ExperimentError<TrialError>) -> Failure {
     match error {
-        ExperimentError::Trial { source: TrialError::Deploy(error), .. } => Failure::Input(format!("error: {error}")),
+        ExperimentError::Trial {
+            source: TrialError::Deploy(error),
+            ..
+        } => Failure::Input(format!("error: {error}")),
         ExperimentError::Trial { .. } => Failure::other(&error),
         ExperimentError::Parts(error) => error.into(),
     }

@@ -64,7 +64,10 @@ impl Parts {
         let path = dir.join("lock");
         let lock = File::create(&path).map_err(failed("create", &path))?;
         match lock.try_lock() {
-            Ok(()) => Ok(Self { dir: dir.to_owned(), _lock: lock }),
+            Ok(()) => Ok(Self {
+                dir: dir.to_owned(),
+                _lock: lock,
+            }),
             Err(fs::TryLockError::WouldBlock) => Err(PartsError::Busy(dir.to_owned())),
             Err(fs::TryLockError::Error(source)) => Err(failed("lock", &path)(source)),
         }
@@ -109,7 +112,10 @@ impl Parts {
     pub fn load(&self, trial: u32) -> Result<FinishedTrial, PartsError> {
         let path = self.path(trial);
         let bytes = fs::read(&path).map_err(failed("read", &path))?;
-        let damaged = |reason: String| PartsError::Damaged { path: path.clone(), reason };
+        let damaged = |reason: String| PartsError::Damaged {
+            path: path.clone(),
+            reason,
+        };
         let part: FinishedTrial = serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
         if part.record.trial == trial {
             Ok(part)

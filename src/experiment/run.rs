@@ -78,7 +78,10 @@ impl Experiment<'_> {
         let run = |trial| {
             let start = Instant::now();
             let record = run(trial).map_err(|source| ExperimentError::Trial { trial, source })?;
-            let part = FinishedTrial { wall_s: start.elapsed().as_secs_f64(), record };
+            let part = FinishedTrial {
+                wall_s: start.elapsed().as_secs_f64(),
+                record,
+            };
             self.parts.save(&part)?;
             tracing::info!(trial, wall_s = part.wall_s, steps = part.record.steps, "finished");
             Ok(part)
@@ -119,7 +122,11 @@ fn run_trials<T: Send, E: Send>(
                 }
             }
         }
-        Ok(if left == 0 { Ending::Finished } else { Ending::Interrupted })
+        Ok(if left == 0 {
+            Ending::Finished
+        } else {
+            Ending::Interrupted
+        })
     })
 }
 
@@ -132,7 +139,9 @@ fn work<T, E>(
     results: mpsc::Sender<Result<T, E>>,
 ) {
     while !stop.is_cancelled() {
-        let Some(&trial) = trials.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
+        let Some(&trial) = trials.get(next.fetch_add(1, Ordering::Relaxed)) else {
+            return;
+        };
         if results.send(run(trial)).is_err() {
             return;
         }
@@ -164,7 +173,10 @@ mod tests {
     #[test]
     fn no_trial_at_all_is_a_finished_experiment() {
         let stop = CancellationToken::new();
-        assert_eq!(run_trials(&[], jobs(2), &stop, Ok::<_, ()>, |_| ()), Ok(Ending::Finished));
+        assert_eq!(
+            run_trials(&[], jobs(2), &stop, Ok::<_, ()>, |_| ()),
+            Ok(Ending::Finished)
+        );
     }
 
     #[test]

@@ -70,7 +70,9 @@ impl Folder {
     /// The folder at `dir`, which need not exist.
     #[must_use]
     pub fn new(dir: PathBuf) -> Self {
-        let new = dir.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
+        let new = dir
+            .ancestors()
+            .take_while(|path| !path.as_os_str().is_empty() && !path.exists());
         let new = new.map(Path::to_owned).collect();
         Self { dir, new }
     }
@@ -102,14 +104,23 @@ impl Folder {
         };
         let mut names = Vec::new();
         for entry in entries {
-            names.push(entry.map_err(failed("read", &self.dir))?.file_name().to_string_lossy().into_owned());
+            names.push(
+                entry
+                    .map_err(failed("read", &self.dir))?
+                    .file_name()
+                    .to_string_lossy()
+                    .into_owned(),
+            );
         }
         if names.iter().any(|name| name == MANIFEST) {
             return self.read(MANIFEST).map(Contents::Results);
         }
         match names.iter().filter(|&name| name != TRIALS).min() {
             None => Ok(Contents::Nothing),
-            Some(found) => Err(FolderError::Foreign { dir: self.dir.clone(), found: found.clone() }),
+            Some(found) => Err(FolderError::Foreign {
+                dir: self.dir.clone(),
+                found: found.clone(),
+            }),
         }
     }
 
@@ -129,13 +140,20 @@ impl Folder {
     pub fn clear(&self, manifest: &Manifest) -> Result<(), FolderError> {
         self.drop_trials()?;
         // A name with a separator never came from desim: it must not reach out of the folder.
-        let named = manifest.files.keys().filter(|name| !name.contains(['/', '\\'])).map(String::as_str);
+        let named = manifest
+            .files
+            .keys()
+            .filter(|name| !name.contains(['/', '\\']))
+            .map(String::as_str);
         for name in named.chain([MANIFEST]) {
             let path = self.dir.join(name);
             gone(fs::remove_file(&path)).map_err(failed("delete", &path))?;
         }
         // Whatever else has come into them meanwhile keeps them.
-        self.new.iter().take_while(|path| fs::remove_dir(path).is_ok()).for_each(drop);
+        self.new
+            .iter()
+            .take_while(|path| fs::remove_dir(path).is_ok())
+            .for_each(drop);
         Ok(())
     }
 
@@ -186,7 +204,10 @@ impl Folder {
     fn read<T: DeserializeOwned>(&self, name: &str) -> Result<T, FolderError> {
         let path = self.dir.join(name);
         let bytes = fs::read(&path).map_err(failed("read", &path))?;
-        serde_json::from_slice(&bytes).map_err(|error| FolderError::Unreadable { path, reason: error.to_string() })
+        serde_json::from_slice(&bytes).map_err(|error| FolderError::Unreadable {
+            path,
+            reason: error.to_string(),
+        })
     }
 }
 
@@ -214,7 +235,10 @@ fn measure(path: &Path) -> io::Result<FileEntry> {
     loop {
         let read = file.read(&mut chunk)?;
         if read == 0 {
-            return Ok(FileEntry { bytes, xxh3_128: format!("{:032x}", hash.digest128()) });
+            return Ok(FileEntry {
+                bytes,
+                xxh3_128: format!("{:032x}", hash.digest128()),
+            });
         }
         hash.update(&chunk[..read]);
         bytes += read as u64;

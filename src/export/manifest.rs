@@ -89,7 +89,11 @@ fn compare(path: &str, there: &Value, now: &Value, lines: &mut Vec<String>) {
     match (there, now) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
             for ((key, there), now) in a.iter().zip(b.values()) {
-                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                let path = if path.is_empty() {
+                    key.clone()
+                } else {
+                    format!("{path}.{key}")
+                };
                 compare(&path, there, now, lines);
             }
         }
@@ -117,16 +121,29 @@ mod tests {
 
     #[test]
     fn a_difference_names_the_field_and_both_values() {
-        let there = manifest(true, json!({"trials": 3, "radio": {"range": 2.0, "loss": {"Bernoulli": 0.1}}}));
+        let there = manifest(
+            true,
+            json!({"trials": 3, "radio": {"range": 2.0, "loss": {"Bernoulli": 0.1}}}),
+        );
         let now = manifest(false, json!({"trials": 3, "radio": {"range": 2.0, "loss": "None"}}));
-        assert_eq!(there.differences(&now), [r#"radio.loss: {"Bernoulli":0.1} there, "None" now"#]);
+        assert_eq!(
+            there.differences(&now),
+            [r#"radio.loss: {"Bernoulli":0.1} there, "None" now"#]
+        );
     }
 
     #[test]
     fn only_an_unfinished_result_takes_another_number_of_trials() {
         let (few, many) = (json!({"trials": 3}), json!({"trials": 5}));
-        assert!(manifest(false, few.clone()).differences(&manifest(false, many.clone())).is_empty());
-        assert_eq!(manifest(true, few).differences(&manifest(false, many)), ["trials: 3 there, 5 now"]);
+        assert!(
+            manifest(false, few.clone())
+                .differences(&manifest(false, many.clone()))
+                .is_empty()
+        );
+        assert_eq!(
+            manifest(true, few).differences(&manifest(false, many)),
+            ["trials: 3 there, 5 now"]
+        );
     }
 
     #[test]

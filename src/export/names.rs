@@ -15,7 +15,10 @@ impl Names {
     /// The names that protocol `P` declares.
     #[must_use]
     pub const fn of<P: Protocol>() -> Self {
-        Self { topics: P::TOPICS, roles: P::ROLES }
+        Self {
+            topics: P::TOPICS,
+            roles: P::ROLES,
+        }
     }
 
     /// The name of a topic.

@@ -10,9 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, ConvertedType, Encoding, LogicalType, Repetition, Type as Physical, ZstdLevel};
-use parquet::data_type::{
-    ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type,
-};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::{WriterProperties, WriterPropertiesPtr};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
@@ -91,11 +89,22 @@ impl<R> Table<R> {
     /// # Errors
     /// If it cannot be written.
     pub fn create(path: &Path, columns: Vec<Column<R>>) -> io::Result<Self> {
-        let fields = columns.iter().map(Column::field).collect::<Result<_, _>>().map_err(into_io)?;
-        let schema = Type::group_type_builder("desim").with_fields(fields).build().map_err(into_io)?;
-        let writer = SerializedFileWriter::new(File::create(path)?, Arc::new(schema), properties(&columns)?)
+        let fields = columns
+            .iter()
+            .map(Column::field)
+            .collect::<Result<_, _>>()
             .map_err(into_io)?;
-        Ok(Self { columns, rows: Vec::new(), writer })
+        let schema = Type::group_type_builder("desim")
+            .with_fields(fields)
+            .build()
+            .map_err(into_io)?;
+        let writer =
+            SerializedFileWriter::new(File::create(path)?, Arc::new(schema), properties(&columns)?).map_err(into_io)?;
+        Ok(Self {
+            columns,
+            rows: Vec::new(),
+            writer,
+        })
     }
 
     /// Adds rows.
@@ -152,13 +161,20 @@ impl<R> Column<R> {
             Value::F32(_) => leaf(name, Physical::FLOAT, Repetition::REQUIRED, None),
             Value::F64(_) => leaf(name, Physical::DOUBLE, Repetition::REQUIRED, None),
             Value::OptionalF64(_) => leaf(name, Physical::DOUBLE, Repetition::OPTIONAL, None),
-            Value::Text(_) => leaf(name, Physical::BYTE_ARRAY, Repetition::REQUIRED, Some(LogicalType::String)),
+            Value::Text(_) => leaf(
+                name,
+                Physical::BYTE_ARRAY,
+                Repetition::REQUIRED,
+                Some(LogicalType::String),
+            ),
             Value::ListI32(_) => {
                 let element = leaf("element", Physical::INT32, Repetition::REQUIRED, None)?;
                 let list = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
                 let list = list.with_fields(vec![element]).build()?;
                 let outer = Type::group_type_builder(name).with_repetition(Repetition::REQUIRED);
-                let outer = outer.with_logical_type(Some(LogicalType::List)).with_converted_type(ConvertedType::LIST);
+                let outer = outer
+                    .with_logical_type(Some(LogicalType::List))
+                    .with_converted_type(ConvertedType::LIST);
                 outer.with_fields(vec![Arc::new(list)]).build().map(Arc::new)
             }
         }

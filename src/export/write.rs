@@ -44,7 +44,10 @@ pub fn write(
     pictures: Pictures,
 ) -> Result<(Summary, Manifest), WriteError> {
     let (names, scene) = (names(scenario), scene(scenario));
-    let mut manifest = Manifest { finished: true, ..Manifest::new(scenario) };
+    let mut manifest = Manifest {
+        finished: true,
+        ..Manifest::new(scenario)
+    };
     let mut files: Vec<String> = Tables::FILES.map(str::to_owned).into();
     let mut tables = Tables::create(parts.dir(), names, scene.targets.len()).map_err(failed("write", parts.dir()))?;
     let mut records = Vec::new();
@@ -56,7 +59,10 @@ pub fn write(
         }
         manifest.trials.push(entry(&part));
         // Paths are the bulk of a record, and the summary has no use for them.
-        records.push(TrialRecord { trajectories: Vec::new(), ..part.record });
+        records.push(TrialRecord {
+            trajectories: Vec::new(),
+            ..part.record
+        });
     }
     tables.finish().map_err(failed("write", parts.dir()))?;
     let summary = Summary::of(&scenario.name, names.topics, names.roles, &records);
@@ -76,7 +82,10 @@ pub fn write(
 /// Draws a trial and answers the names of the files.
 fn draw(folder: &Folder, scene: &Scene, record: &TrialRecord) -> Result<[String; 2], FolderError> {
     let names = ["final", "trajectories"].map(|name| format!("{name}_{}.svg", record.trial));
-    for (name, picture) in names.iter().zip([scene.final_state(record), scene.trajectories(record)]) {
+    for (name, picture) in names
+        .iter()
+        .zip([scene.final_state(record), scene.trajectories(record)])
+    {
         folder.stage(name, format!("{picture}\n").as_bytes())?;
     }
     Ok(names)

@@ -77,17 +77,27 @@ mod tests {
     #[test]
     fn figures_keep_three_digits_that_count() {
         let written = [0.0, 0.001_234, 0.123_456, 1.0, 17.25, 99.97, 1400.4, 1_234_567.0].map(figure);
-        assert_eq!(written, ["0", "1.23e-3", "0.123", "1.00", "17.2", "100", "1,400", "1,234,567"]);
+        assert_eq!(
+            written,
+            ["0", "1.23e-3", "0.123", "1.00", "17.2", "100", "1,400", "1,234,567"]
+        );
     }
 
     #[test]
     fn nearly_all_is_not_all() {
-        assert_eq!([0.0, 0.5, 0.999_999, 1.0].map(percent), ["0 %", "50.00 %", "99.99 %", "100 %"]);
+        assert_eq!(
+            [0.0, 0.5, 0.999_999, 1.0].map(percent),
+            ["0 %", "50.00 %", "99.99 %", "100 %"]
+        );
     }
 
     #[test]
     fn an_open_interval_shows_its_open_end() {
-        let open = Estimate { value: Some(23.0), ci95: [Some(13.0), None], n: 21 };
+        let open = Estimate {
+            value: Some(23.0),
+            ci95: [Some(13.0), None],
+            n: 21,
+        };
         assert_eq!(estimate(&open, figure), "23.0 [13.0, –]");
         assert_eq!(estimate(&Estimate::default(), figure), "–");
     }

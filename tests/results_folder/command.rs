@@ -32,9 +32,16 @@ fn text(bytes: &[u8]) -> String {
 #[test]
 fn a_run_reports_and_says_where_its_results_are() {
     let dir = place();
-    let out = desim(dir.path(), &["scenario", "small.ron"]).assert().success().get_output().clone();
+    let out = desim(dir.path(), &["scenario", "small.ron"])
+        .assert()
+        .success()
+        .get_output()
+        .clone();
     let report = text(&out.stdout);
-    assert!(report.contains("Who hears whom?") && report.contains("results/small"), "{report}");
+    assert!(
+        report.contains("Who hears whom?") && report.contains("results/small"),
+        "{report}"
+    );
     assert_eq!(text(&out.stderr), "", "no progress where there is no terminal");
     assert!(dir.path().join("results/small/trials.parquet").exists());
 }
@@ -43,8 +50,13 @@ fn a_run_reports_and_says_where_its_results_are() {
 fn json_is_one_document_and_the_summary_on_disk() {
     let dir = place();
     for _ in ["run", "finished already"] {
-        let out = desim(dir.path(), &["scenario", "small.ron", "--format", "json"]).assert().success();
-        assert_eq!(out.get_output().stdout, fs::read(dir.path().join("results/small/summary.json")).unwrap());
+        let out = desim(dir.path(), &["scenario", "small.ron", "--format", "json"])
+            .assert()
+            .success();
+        assert_eq!(
+            out.get_output().stdout,
+            fs::read(dir.path().join("results/small/summary.json")).unwrap()
+        );
     }
 }
 
@@ -53,12 +65,33 @@ fn drivers_and_jobs_give_the_same_bytes() {
     let dir = place();
     let variants = [("a", "actors", "1"), ("b", "inline", "3")];
     let tables = variants.map(|(out, driver, jobs)| {
-        desim(dir.path(), &["scenario", "small.ron", "--quiet", "--out", out, "--driver", driver, "--jobs", jobs])
-            .assert()
-            .success()
-            .stdout("");
-        ["trials", "bandwidth", "latency", "connectivity", "robots", "trajectories", "frames"]
-            .map(|table| fs::read(dir.path().join(out).join(format!("{table}.parquet"))).unwrap())
+        desim(
+            dir.path(),
+            &[
+                "scenario",
+                "small.ron",
+                "--quiet",
+                "--out",
+                out,
+                "--driver",
+                driver,
+                "--jobs",
+                jobs,
+            ],
+        )
+        .assert()
+        .success()
+        .stdout("");
+        [
+            "trials",
+            "bandwidth",
+            "latency",
+            "connectivity",
+            "robots",
+            "trajectories",
+            "frames",
+        ]
+        .map(|table| fs::read(dir.path().join(out).join(format!("{table}.parquet"))).unwrap())
     });
     assert!(tables[0] == tables[1]);
 }
@@ -66,25 +99,48 @@ fn drivers_and_jobs_give_the_same_bytes() {
 #[test]
 fn finished_results_are_shown_again_without_a_run() {
     let dir = place();
-    let first = desim(dir.path(), &["scenario", "small.ron"]).assert().success().get_output().clone();
+    let first = desim(dir.path(), &["scenario", "small.ron"])
+        .assert()
+        .success()
+        .get_output()
+        .clone();
     let manifest = fs::read(dir.path().join("results/small/manifest.json")).unwrap();
-    let second = desim(dir.path(), &["scenario", "small.ron"]).assert().success().get_output().clone();
+    let second = desim(dir.path(), &["scenario", "small.ron"])
+        .assert()
+        .success()
+        .get_output()
+        .clone();
     assert_eq!(first.stdout, second.stdout);
     assert_eq!(text(&second.stderr), "results/small holds these results already\n");
-    assert_eq!(fs::read(dir.path().join("results/small/manifest.json")).unwrap(), manifest);
+    assert_eq!(
+        fs::read(dir.path().join("results/small/manifest.json")).unwrap(),
+        manifest
+    );
 }
 
 #[test]
 fn results_of_another_scenario_are_refused_unless_forced() {
     let dir = place();
-    desim(dir.path(), &["scenario", "small.ron", "--quiet"]).assert().success();
+    desim(dir.path(), &["scenario", "small.ron", "--quiet"])
+        .assert()
+        .success();
     let before = fs::read(dir.path().join("results/small/summary.json")).unwrap();
     let changed = ["scenario", "small.ron", "--set", "radio.range=3.0"];
-    let refused = desim(dir.path(), &changed).assert().code(2).stdout("").get_output().clone();
+    let refused = desim(dir.path(), &changed)
+        .assert()
+        .code(2)
+        .stdout("")
+        .get_output()
+        .clone();
     let message = text(&refused.stderr);
-    assert!(message.contains("radio.range: 2.0 there, 3.0 now") && message.contains("--force"), "{message}");
+    assert!(
+        message.contains("radio.range: 2.0 there, 3.0 now") && message.contains("--force"),
+        "{message}"
+    );
     assert_eq!(fs::read(dir.path().join("results/small/summary.json")).unwrap(), before);
-    desim(dir.path(), &[&changed[..], &["--force", "--quiet"]].concat()).assert().success();
+    desim(dir.path(), &[&changed[..], &["--force", "--quiet"]].concat())
+        .assert()
+        .success();
     assert_ne!(fs::read(dir.path().join("results/small/summary.json")).unwrap(), before);
 }
 
@@ -92,7 +148,11 @@ fn results_of_another_scenario_are_refused_unless_forced() {
 fn bad_input_is_one_message_and_status_2_and_nothing_written() {
     let dir = place();
     fs::write(dir.path().join("bad.ron"), SMALL.replace("2.0", "-2.0")).unwrap();
-    fs::write(dir.path().join("crowd.ron"), SMALL.replace("Uniform", "Cluster(radius: 0.1)")).unwrap();
+    fs::write(
+        dir.path().join("crowd.ron"),
+        SMALL.replace("Uniform", "Cluster(radius: 0.1)"),
+    )
+    .unwrap();
     fs::create_dir(dir.path().join("photos")).unwrap();
     fs::write(dir.path().join("photos/cat.jpg"), "").unwrap();
     let before = fs::read_dir(dir.path()).unwrap().count();
@@ -102,7 +162,10 @@ fn bad_input_is_one_message_and_status_2_and_nothing_written() {
         (&["scenario", "crowd.ron"], "robots"),
         (&["scenario", "small.ron", "--set", "radio.rage=1"], "range"),
         (&["scenario", "small.ron", "--trials", "0"], "trials"),
-        (&["scenario", "small.ron", "--out", "small.ron"], "small.ron is not a folder"),
+        (
+            &["scenario", "small.ron", "--out", "small.ron"],
+            "small.ron is not a folder",
+        ),
         (&["scenario", "small.ron", "--out", "photos"], "cat.jpg"),
         (&["check", "bad.ron"], ""),
     ];
@@ -118,7 +181,10 @@ fn bad_input_is_one_message_and_status_2_and_nothing_written() {
 fn an_unwritable_place_is_status_1_and_says_where() {
     let dir = place();
     // Below a file, nothing can be made; unlike permissions, this binds every user.
-    let out = desim(dir.path(), &["scenario", "small.ron", "--out", "/dev/null/results"]).assert().get_output().clone();
+    let out = desim(dir.path(), &["scenario", "small.ron", "--out", "/dev/null/results"])
+        .assert()
+        .get_output()
+        .clone();
     assert!(matches!(out.status.code(), Some(1 | 2)));
     assert!(text(&out.stderr).contains("/dev/null/results"), "{}", text(&out.stderr));
 }
@@ -126,15 +192,32 @@ fn an_unwritable_place_is_status_1_and_says_where() {
 #[test]
 fn a_reader_that_leaves_early_is_no_fault() {
     let dir = place();
-    let script = format!("{} schema | head -c 1 >/dev/null; echo ${{PIPESTATUS[0]}}", env!("CARGO_BIN_EXE_desim"));
-    let out = Process::new("bash").args(["-c", &script]).current_dir(dir.path()).output().unwrap();
+    let script = format!(
+        "{} schema | head -c 1 >/dev/null; echo ${{PIPESTATUS[0]}}",
+        env!("CARGO_BIN_EXE_desim")
+    );
+    let out = Process::new("bash")
+        .args(["-c", &script])
+        .current_dir(dir.path())
+        .output()
+        .unwrap();
     assert_eq!((text(&out.stdout).trim(), text(&out.stderr).as_str()), ("0", ""));
 }
 
 #[test]
 fn a_terminated_run_keeps_its_trials_and_goes_on() {
     let dir = place();
-    let long = ["scenario", "small.ron", "--set", "time_limit=2000.0", "--jobs", "1", "--trials", "40", "--quiet"];
+    let long = [
+        "scenario",
+        "small.ron",
+        "--set",
+        "time_limit=2000.0",
+        "--jobs",
+        "1",
+        "--trials",
+        "40",
+        "--quiet",
+    ];
     let mut child = Process::new(env!("CARGO_BIN_EXE_desim"))
         .args(long)
         .env("DESIM_LOG", "info")
@@ -144,7 +227,10 @@ fn a_terminated_run_keeps_its_trials_and_goes_on() {
         .unwrap();
     let mut log = BufReader::new(child.stderr.take().unwrap());
     log.read_line(&mut String::new()).unwrap();
-    let killed = Process::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    let killed = Process::new("kill")
+        .args(["-TERM", &child.id().to_string()])
+        .status()
+        .unwrap();
     assert!(killed.success());
     let mut rest = String::new();
     log.read_to_string(&mut rest).unwrap();
@@ -153,7 +239,10 @@ fn a_terminated_run_keeps_its_trials_and_goes_on() {
 
     let kept = || fs::read_dir(dir.path().join("results/small/.trials")).unwrap().count();
     assert!(kept() > 1);
-    let resumed = desim(dir.path(), &long).timeout(Duration::from_secs(300)).assert().success();
+    let resumed = desim(dir.path(), &long)
+        .timeout(Duration::from_secs(300))
+        .assert()
+        .success();
     assert_eq!(text(&resumed.get_output().stdout), "");
     assert!(!dir.path().join("results/small/.trials").exists());
 }

@@ -34,29 +34,48 @@ pub fn record(trial: u32) -> TrialRecord {
     TrialRecord {
         trial,
         seed: 1,
-        outcome: if trial % 5 == 4 { Outcome::Censored } else { Outcome::Completed { step: 100 + 7 * u64::from(trial) } },
+        outcome: if trial % 5 == 4 {
+            Outcome::Censored
+        } else {
+            Outcome::Completed {
+                step: 100 + 7 * u64::from(trial),
+            }
+        },
         steps: 600,
         control_period: Span::from_secs(0.1),
         simulated: SimTime::from_secs(60.0),
         events: 12_345,
         digest: u128::MAX - u128::from(trial),
         ledger: (0..4).map(|topic| fates(topic, trial)).collect(),
-        traffic: (0..ROBOTS).flat_map(|robot| (0..2).map(move |topic| traffic(robot, topic, trial))).collect(),
+        traffic: (0..ROBOTS)
+            .flat_map(|robot| (0..2).map(move |topic| traffic(robot, topic, trial)))
+            .collect(),
         latency,
         suspicions: u64::from(trial),
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
         robots: (0..ROBOTS).map(|robot| state(robot, odd)).collect(),
-        trajectories: (0..SAMPLES).map(|sample| (SimTime::from_secs(sample as f64 * 5.0), places(sample))).collect(),
+        trajectories: (0..SAMPLES)
+            .map(|sample| (SimTime::from_secs(sample as f64 * 5.0), places(sample)))
+            .collect(),
     }
 }
 
 fn fates(topic: u64, trial: u32) -> TopicFates {
     let lost = [20 + topic + u64::from(trial)];
-    TopicFates { offered: 103 + topic + u64::from(trial), delivered: 80, lost, in_flight: 3 }
+    TopicFates {
+        offered: 103 + topic + u64::from(trial),
+        delivered: 80,
+        lost,
+        in_flight: 3,
+    }
 }
 
 fn traffic(robot: u32, topic: u8, trial: u32) -> TrafficRow {
-    let volume = |frames: u64| Volume { frames, payload_bytes: 4 * frames, header_bytes: 5 * frames };
+    let volume = |frames: u64| Volume {
+        frames,
+        payload_bytes: 4 * frames,
+        header_bytes: 5 * frames,
+    };
     TrafficRow {
         robot: ActorId(robot),
         role: role(robot),
@@ -98,12 +117,20 @@ fn state(robot: u32, odd: f64) -> RobotState {
         _ => (side * 0.5, None, vec![]),
     };
     let position = Vec2::new(x, odd * f64::from(robot) / 30.0);
-    RobotState { pose: Pose { position, heading: odd }, role: role(robot), target, parents }
+    RobotState {
+        pose: Pose { position, heading: odd },
+        role: role(robot),
+        target,
+        parents,
+    }
 }
 
 fn places(sample: u64) -> Vec<[f32; 2]> {
     let grown = sample as f32 / SAMPLES as f32;
-    (0..ROBOTS).map(|robot| state(robot, 0.1).pose.position).map(|at| [at.x as f32 * grown, at.y as f32]).collect()
+    (0..ROBOTS)
+        .map(|robot| state(robot, 0.1).pose.position)
+        .map(|at| [at.x as f32 * grown, at.y as f32])
+        .collect()
 }
 
 /// What keeps a made-up trial from being made up.
@@ -121,9 +148,17 @@ pub fn run(
 ) -> Result<Ending, ExperimentError<GivenUp>> {
     let folder = Folder::new(dir.to_owned());
     let parts = Parts::open(&folder.trials())?;
-    folder.declare(&Manifest::new(scenario)).expect("the folder can be written");
+    folder
+        .declare(&Manifest::new(scenario))
+        .expect("the folder can be written");
     let jobs = NonZeroUsize::new(jobs).expect("at least one thread");
-    let experiment = Experiment { trials: scenario.trials, seed: scenario.seed, jobs, parts: &parts, stop };
+    let experiment = Experiment {
+        trials: scenario.trials,
+        seed: scenario.seed,
+        jobs,
+        parts: &parts,
+        stop,
+    };
     let ending = experiment.run(run, |_| ())?;
     if ending == Ending::Finished {
         write(&folder, parts, scenario, Pictures::First).expect("the results can be written");

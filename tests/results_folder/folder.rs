@@ -20,12 +20,18 @@ const TRIALS: u32 = 7;
 fn results(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(dir).unwrap().map(Result::unwrap);
     let files = entries.map(|entry| (entry.file_name().into_string().unwrap(), entry.path()));
-    files.filter(|(name, _)| name != "manifest.json").map(|(name, path)| (name, fs::read(path).unwrap())).collect()
+    files
+        .filter(|(name, _)| name != "manifest.json")
+        .map(|(name, path)| (name, fs::read(path).unwrap()))
+        .collect()
 }
 
 fn uninterrupted(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     let stop = CancellationToken::new();
-    assert_eq!(run(dir, &scenario(TRIALS), 1, &stop, |trial| Ok(record(trial))).unwrap(), Ending::Finished);
+    assert_eq!(
+        run(dir, &scenario(TRIALS), 1, &stop, |trial| Ok(record(trial))).unwrap(),
+        Ending::Finished
+    );
     results(dir)
 }
 
@@ -105,7 +111,10 @@ fn a_kept_trial_comes_back_bit_for_bit() {
     record.connectivity[2].lambda2 = 2.2250738585072011e-308;
     record.trajectories[0].1[0] = [f32::MIN_POSITIVE / 8.0, 16_777_217.0_f32.sqrt()];
     record.robots[0].pose.heading = -0.0;
-    let part = FinishedTrial { wall_s: 1.0 / 3.0, record };
+    let part = FinishedTrial {
+        wall_s: 1.0 / 3.0,
+        record,
+    };
     parts.save(&part).unwrap();
     let read = parts.load(2).unwrap();
     assert_eq!(read, part);
@@ -137,7 +146,9 @@ fn a_folder_says_what_is_in_it() {
     assert!(matches!(contents(dir.path()), Err(FolderError::Unreadable { .. })));
 
     interrupted(&dir.path().join("results"));
-    let Ok(Contents::Results(manifest)) = contents(&dir.path().join("results")) else { panic!("there are results") };
+    let Ok(Contents::Results(manifest)) = contents(&dir.path().join("results")) else {
+        panic!("there are results")
+    };
     assert!(!manifest.finished && manifest.differences(&Manifest::new(&scenario(TRIALS))).is_empty());
 }
 
@@ -147,7 +158,9 @@ fn clearing_deletes_what_desim_wrote_and_nothing_else() {
     uninterrupted(dir.path());
     fs::write(dir.path().join("notes.txt"), "mine").unwrap();
     let folder = Folder::new(dir.path().to_owned());
-    let Ok(Contents::Results(mut manifest)) = folder.contents() else { panic!("there are results") };
+    let Ok(Contents::Results(mut manifest)) = folder.contents() else {
+        panic!("there are results")
+    };
     let entry = manifest.files["summary.json"].clone();
     manifest.files.insert("../outside".to_owned(), entry);
     folder.clear(&manifest).unwrap();
@@ -159,8 +172,13 @@ fn clearing_deletes_what_desim_wrote_and_nothing_else() {
 fn the_manifest_knows_length_and_hash_of_every_other_file() {
     let dir = tempdir().unwrap();
     let files = uninterrupted(dir.path());
-    let Ok(Contents::Results(manifest)) = Folder::new(dir.path().to_owned()).contents() else { panic!() };
-    assert_eq!(manifest.files.keys().collect::<Vec<_>>(), files.keys().collect::<Vec<_>>());
+    let Ok(Contents::Results(manifest)) = Folder::new(dir.path().to_owned()).contents() else {
+        panic!()
+    };
+    assert_eq!(
+        manifest.files.keys().collect::<Vec<_>>(),
+        files.keys().collect::<Vec<_>>()
+    );
     for (name, bytes) in files {
         assert_eq!(manifest.files[&name].bytes, bytes.len() as u64);
         let hash = xxhash_rust::xxh3::xxh3_128(&bytes);
@@ -176,7 +194,10 @@ fn rows(dir: &Path, table: &str) -> Vec<Row> {
 }
 
 fn column(row: &Row, name: &str) -> Field {
-    row.get_column_iter().find(|(column, _)| *column == name).map(|(_, field)| field.clone()).unwrap()
+    row.get_column_iter()
+        .find(|(column, _)| *column == name)
+        .map(|(_, field)| field.clone())
+        .unwrap()
 }
 
 #[test]
@@ -186,20 +207,37 @@ fn tables_read_back_as_they_were_recorded() {
 
     let trials = rows(dir.path(), "trials.parquet");
     let steps: Vec<_> = trials.iter().map(|row| column(row, "steps_to_completion")).collect();
-    assert_eq!((&steps[3], &steps[4]), (&Field::Long(121), &Field::Null), "trial 4 is censored");
+    assert_eq!(
+        (&steps[3], &steps[4]),
+        (&Field::Long(121), &Field::Null),
+        "trial 4 is censored"
+    );
     assert_eq!(column(&trials[0], "digest"), Field::Str("f".repeat(32)));
 
     let robots = rows(dir.path(), "robots.parquet");
     let parents = |row: &Row| column(row, "parents").to_string();
-    assert_eq!((parents(&robots[0]), parents(&robots[5])), ("[]".to_owned(), "[3, 0]".to_owned()));
+    assert_eq!(
+        (parents(&robots[0]), parents(&robots[5])),
+        ("[]".to_owned(), "[3, 0]".to_owned())
+    );
     assert_eq!(column(&robots[0], "target"), Field::Null);
-    let Field::Double(y) = column(&robots[8], "y_m") else { panic!("y_m is a double") };
+    let Field::Double(y) = column(&robots[8], "y_m") else {
+        panic!("y_m is a double")
+    };
     assert_eq!(y.to_bits(), record(0).robots[8].pose.position.y.to_bits());
 
     let (bandwidth, expected) = (rows(dir.path(), "bandwidth.parquet"), record(0).traffic);
-    let first_lost = bandwidth.iter().find(|row| column(row, "direction") == Field::Str("lost_channel".into()));
-    assert_eq!(column(first_lost.unwrap(), "frames"), Field::Long(expected[2].lost[0].frames as i64));
+    let first_lost = bandwidth
+        .iter()
+        .find(|row| column(row, "direction") == Field::Str("lost_channel".into()));
+    assert_eq!(
+        column(first_lost.unwrap(), "frames"),
+        Field::Long(expected[2].lost[0].frames as i64)
+    );
     assert_eq!(rows(dir.path(), "frames.parquet").len(), 4 * TRIALS as usize);
-    assert_eq!(column(&rows(dir.path(), "connectivity.parquet")[3], "links_1"), Field::Int(0));
+    assert_eq!(
+        column(&rows(dir.path(), "connectivity.parquet")[3], "links_1"),
+        Field::Int(0)
+    );
     assert_eq!(rows(dir.path(), "trajectories.parquet").len(), 9 * 12 * TRIALS as usize);
 }

@@ -12,10 +12,16 @@ const ROLES: [&str; 4] = ["free", "root", "networker", "worker"];
 
 fn report(records: &[TrialRecord], colour: bool) -> String {
     terminal(&Input {
-        question: Some("Does the backbone still reach its targets when one frame in five is lost on its way to a robot?"),
+        question: Some(
+            "Does the backbone still reach its targets when one frame in five is lost on its way to a robot?",
+        ),
         summary: &Summary::of("loss20", &TOPICS, &ROLES, records),
         control_period_s: 0.1,
-        speed: Speed { simulated_s: 2100.0, delivered: 1_250_000, wall_s: 17.5 },
+        speed: Speed {
+            simulated_s: 2100.0,
+            delivered: 1_250_000,
+            wall_s: 17.5,
+        },
         folder: Path::new("results/loss20"),
         files: &["bandwidth.parquet", "final_0.svg", "summary.json", "trials.parquet"],
         colour,

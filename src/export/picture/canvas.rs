@@ -41,7 +41,10 @@ impl Canvas {
             scale,
             legend_lines: 0,
         };
-        canvas.put(element("rect", [("width", "100%"), ("height", "100%"), ("fill", "#ffffff")]));
+        canvas.put(element(
+            "rect",
+            [("width", "100%"), ("height", "100%"), ("fill", "#ffffff")],
+        ));
         canvas.write(LEFT, 26.0, 17.0, "start", TEXT, title);
         canvas.write(LEFT, 47.0, 13.0, "start", AXIS, subtitle);
         canvas.axes();
@@ -100,7 +103,10 @@ impl Canvas {
     pub fn legend_stroke(&mut self, stroke: Stroke, text: &str) {
         let at = self.legend_place();
         let half = Vec2::new(10.0, 0.0);
-        let stroke = Stroke { width: stroke.width.max(1.5), ..stroke };
+        let stroke = Stroke {
+            width: stroke.width.max(1.5),
+            ..stroke
+        };
         self.put(line(at - half, at + half, stroke));
         self.legend_text(at, text);
     }
@@ -127,12 +133,23 @@ impl Canvas {
         self.legend_lines += 1;
         let from = self.legend_place() - Vec2::new(10.0, 0.0);
         let to = from + Vec2::new(metres * self.scale, 0.0);
-        let stroke = Stroke { colour: TEXT, width: 2.0, opacity: 1.0 };
+        let stroke = Stroke {
+            colour: TEXT,
+            width: 2.0,
+            opacity: 1.0,
+        };
         self.put(line(from, to, stroke));
         for end in [from, to] {
             self.put(line(end - Vec2::new(0.0, 4.0), end + Vec2::new(0.0, 4.0), stroke));
         }
-        self.write(f64::midpoint(from.x, to.x), from.y + 19.0, 12.0, "middle", TEXT, &format!("{metres} m"));
+        self.write(
+            f64::midpoint(from.x, to.x),
+            from.y + 19.0,
+            12.0,
+            "middle",
+            TEXT,
+            &format!("{metres} m"),
+        );
     }
 
     fn axes(&mut self) {
@@ -144,7 +161,11 @@ impl Canvas {
             frame.assign(name, format!("{value:.1}"));
         }
         self.put(frame);
-        let stroke = Stroke { colour: AXIS, width: 1.0, opacity: 1.0 };
+        let stroke = Stroke {
+            colour: AXIS,
+            width: 1.0,
+            opacity: 1.0,
+        };
         for tick in ticks(half.x) {
             let at = self.pixel(Vec2::new(tick, -half.y));
             self.put(line(at, at + Vec2::new(0.0, 5.0), stroke));
@@ -158,7 +179,10 @@ impl Canvas {
         let (bottom, left) = (self.pixel(Vec2::new(0.0, -half.y)), self.pixel(Vec2::new(-half.x, 0.0)));
         self.write(bottom.x, bottom.y + 38.0, 13.0, "middle", TEXT, "x (m)");
         let mut turned = text(Vec2::zeros(), 13.0, "middle", TEXT, "y (m)");
-        turned.assign("transform", format!("translate({:.1},{:.1}) rotate(-90)", left.x - 40.0, left.y));
+        turned.assign(
+            "transform",
+            format!("translate({:.1},{:.1}) rotate(-90)", left.x - 40.0, left.y),
+        );
         self.put(turned);
     }
 
@@ -183,7 +207,10 @@ impl Canvas {
 fn tick_step(length: f64) -> f64 {
     let power = 10_f64.powf((length / 10.0).log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
-    steps.into_iter().find(|step| length / step <= 10.0 + 1e-9).unwrap_or(steps[3])
+    steps
+        .into_iter()
+        .find(|step| length / step <= 10.0 + 1e-9)
+        .unwrap_or(steps[3])
 }
 
 /// Multiples of the tick step from `-half` to `half`.

@@ -24,7 +24,10 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
     }
     scene.targets.iter().for_each(|&target| canvas.mark(target, TARGET));
     for robot in robots {
-        canvas.mark(robot.pose.position, style::role(scene.role(robot.role), robot.role.into()));
+        canvas.mark(
+            robot.pose.position,
+            style::role(scene.role(robot.role), robot.role.into()),
+        );
     }
     if robots.len() <= MOST_LABELS {
         for (number, robot) in robots.iter().enumerate() {
@@ -43,7 +46,13 @@ fn legend(canvas: &mut Canvas, scene: &Scene, robots: &[RobotState], targets: &[
         }
     }
     if !scene.targets.is_empty() {
-        canvas.legend_mark(style::Marker { size: TARGET.size * 0.7, ..TARGET }, "target");
+        canvas.legend_mark(
+            style::Marker {
+                size: TARGET.size * 0.7,
+                ..TARGET
+            },
+            "target",
+        );
     }
     canvas.legend_stroke(LINK, &format!("within range ({} m)", scene.range));
     for &target in targets {
@@ -56,7 +65,9 @@ fn links(robots: &[RobotState], range: f64) -> impl Iterator<Item = (Vec2, Vec2)
     robots.iter().enumerate().flat_map(move |(index, robot)| {
         let from = robot.pose.position;
         let others = robots[index + 1..].iter().map(|other| other.pose.position);
-        others.filter(move |to| (to - from).norm() <= range).map(move |to| (from, to))
+        others
+            .filter(move |to| (to - from).norm() <= range)
+            .map(move |to| (from, to))
     })
 }
 
@@ -70,8 +81,11 @@ fn worked_for(robots: &[RobotState]) -> Vec<u16> {
 
 /// From each robot of a target's chains to the robots that it relies on.
 fn chain(robots: &[RobotState], target: u16) -> impl Iterator<Item = (Vec2, Vec2)> {
-    robots.iter().filter(move |robot| robot.target == Some(target)).flat_map(move |robot| {
-        let parents = robot.parents.iter().filter_map(|parent| robots.get(parent.index()));
-        parents.map(|parent| (robot.pose.position, parent.pose.position))
-    })
+    robots
+        .iter()
+        .filter(move |robot| robot.target == Some(target))
+        .flat_map(move |robot| {
+            let parents = robot.parents.iter().filter_map(|parent| robots.get(parent.index()));
+            parents.map(|parent| (robot.pose.position, parent.pose.position))
+        })
 }

@@ -69,7 +69,11 @@ fn obstacles(canvas: &mut canvas::Canvas, obstacles: &[ObstacleConfig]) {
             ObstacleConfig::Wall { from, to } => canvas.line(
                 Vec2::new(from.0.get(), from.1.get()),
                 Vec2::new(to.0.get(), to.1.get()),
-                style::Stroke { colour: style::OBSTACLE, width: 3.0, opacity: 1.0 },
+                style::Stroke {
+                    colour: style::OBSTACLE,
+                    width: 3.0,
+                    opacity: 1.0,
+                },
             ),
         }
     }

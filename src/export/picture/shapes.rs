@@ -32,7 +32,10 @@ pub fn line(from: Vec2, to: Vec2, stroke: Stroke) -> Element {
 
 /// Separate straight lines.
 pub fn path(lines: &[(Vec2, Vec2)], stroke: Stroke) -> Element {
-    let data: Vec<_> = lines.iter().map(|(from, to)| format!("M{} L{}", pair(*from), pair(*to))).collect();
+    let data: Vec<_> = lines
+        .iter()
+        .map(|(from, to)| format!("M{} L{}", pair(*from), pair(*to)))
+        .collect();
     stroked(element("path", [("d", &data.join(" "))]), stroke)
 }
 
@@ -58,8 +61,17 @@ pub fn marker(at: Vec2, look: Marker) -> Element {
     let filled = [("fill", colour), ("stroke", "#ffffff"), ("stroke-width", "0.8")];
     match shape {
         Shape::Disc => circle(at, size, filled),
-        Shape::Ring => circle(at, size, [("fill", "#ffffff"), ("stroke", colour), ("stroke-width", "1.6")]),
-        Shape::Square => polygon(at, size * std::f64::consts::SQRT_2, &[45.0, 135.0, 225.0, 315.0], filled),
+        Shape::Ring => circle(
+            at,
+            size,
+            [("fill", "#ffffff"), ("stroke", colour), ("stroke-width", "1.6")],
+        ),
+        Shape::Square => polygon(
+            at,
+            size * std::f64::consts::SQRT_2,
+            &[45.0, 135.0, 225.0, 315.0],
+            filled,
+        ),
         Shape::Triangle => polygon(at, size * 1.25, &[90.0, 210.0, 330.0], filled),
         Shape::Target => target(at, look),
     }
@@ -79,7 +91,11 @@ fn polygon(at: Vec2, radius: f64, angles: &[f64], attributes: [(&str, &str); 3])
 
 /// A circle with an upright cross that reaches out of it.
 fn target(at: Vec2, look: Marker) -> Element {
-    let stroke = Stroke { colour: look.colour, width: 1.6, opacity: 1.0 };
+    let stroke = Stroke {
+        colour: look.colour,
+        width: 1.6,
+        opacity: 1.0,
+    };
     let arms = [Vec2::x(), -Vec2::x(), Vec2::y(), -Vec2::y()];
     let arms = arms.map(|arm| (at + arm * (look.size * 0.55), at + arm * (look.size * 1.35)));
     let mut group = Element::new("g");

@@ -19,18 +19,35 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
     let paths: Vec<_> = (0..record.robots.len()).map(|robot| path(record, robot)).collect();
     for (robot, path) in record.robots.iter().zip(&paths) {
         let colour = style::role(scene.role(robot.role), robot.role.into()).colour;
-        canvas.path(path, Stroke { colour, width: 1.3, opacity: 0.6 });
+        canvas.path(
+            path,
+            Stroke {
+                colour,
+                width: 1.3,
+                opacity: 0.6,
+            },
+        );
     }
     scene.targets.iter().for_each(|&target| canvas.mark(target, TARGET));
-    paths.iter().filter_map(|path| path.first()).for_each(|&start| canvas.mark(start, START));
+    paths
+        .iter()
+        .filter_map(|path| path.first())
+        .for_each(|&start| canvas.mark(start, START));
     for robot in &record.robots {
-        canvas.mark(robot.pose.position, style::role(scene.role(robot.role), robot.role.into()));
+        canvas.mark(
+            robot.pose.position,
+            style::role(scene.role(robot.role), robot.role.into()),
+        );
     }
     legend(&mut canvas, scene, record);
     canvas.finish()
 }
 
-const START: Marker = Marker { shape: Shape::Ring, colour: "#404040", size: 2.0 };
+const START: Marker = Marker {
+    shape: Shape::Ring,
+    colour: "#404040",
+    size: 2.0,
+};
 
 fn legend(canvas: &mut Canvas, scene: &Scene, record: &TrialRecord) {
     canvas.legend_mark(START, "start");
@@ -40,7 +57,13 @@ fn legend(canvas: &mut Canvas, scene: &Scene, record: &TrialRecord) {
         }
     }
     if !scene.targets.is_empty() {
-        canvas.legend_mark(Marker { size: TARGET.size * 0.7, ..TARGET }, "target");
+        canvas.legend_mark(
+            Marker {
+                size: TARGET.size * 0.7,
+                ..TARGET
+            },
+            "target",
+        );
     }
 }
 

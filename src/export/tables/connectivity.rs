@@ -12,7 +12,10 @@ pub struct Row {
 
 pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
     let samples = record.connectivity.iter();
-    samples.map(|sample| Row { trial: record.trial, sample: sample.clone() })
+    samples.map(|sample| Row {
+        trial: record.trial,
+        sample: sample.clone(),
+    })
 }
 
 type Col = Column<Row>;
@@ -25,12 +28,16 @@ pub fn columns(names: &Names, targets: usize) -> Vec<Column<Row>> {
         Col::f64("lambda2", |row| row.sample.lambda2),
         Col::i32("components", |row| row.sample.components as i32),
     ];
-    columns.extend(names.roles.iter().enumerate().map(|(index, role)| {
-        Col::optional_i32(format!("robots_{role}"), move |row| at(&row.sample.roles, index))
-    }));
-    columns.extend((0..targets).map(|index| {
-        Col::optional_i32(format!("links_{index}"), move |row| at(&row.sample.links, index))
-    }));
+    columns.extend(
+        names
+            .roles
+            .iter()
+            .enumerate()
+            .map(|(index, role)| Col::optional_i32(format!("robots_{role}"), move |row| at(&row.sample.roles, index))),
+    );
+    columns.extend(
+        (0..targets).map(|index| Col::optional_i32(format!("links_{index}"), move |row| at(&row.sample.links, index))),
+    );
     columns
 }
 

@@ -14,7 +14,11 @@ pub struct Row {
 
 pub fn rows(record: &TrialRecord, names: &Names) -> impl Iterator<Item = Row> {
     let topics = record.ledger.iter().enumerate();
-    topics.map(|(topic, fates)| Row { trial: record.trial, topic: names.topic(topic), fates: fates.clone() })
+    topics.map(|(topic, fates)| Row {
+        trial: record.trial,
+        topic: names.topic(topic),
+        fates: fates.clone(),
+    })
 }
 
 type Col = Column<Row>;
@@ -27,7 +31,9 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::i64("delivered", |row| row.fates.delivered as i64),
     ];
     columns.extend(LossCause::ALL.iter().enumerate().map(|(index, cause)| {
-        Col::i64(format!("lost_{}", cause.name()), move |row| row.fates.lost[index] as i64)
+        Col::i64(format!("lost_{}", cause.name()), move |row| {
+            row.fates.lost[index] as i64
+        })
     }));
     columns.push(Col::i64("in_flight", |row| row.fates.in_flight as i64));
     columns

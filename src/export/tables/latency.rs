@@ -13,7 +13,12 @@ pub struct Row {
 
 pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
     let buckets = record.latency.buckets();
-    buckets.map(|(low_ns, high_ns, count)| Row { trial: record.trial, low_ns, high_ns, count })
+    buckets.map(|(low_ns, high_ns, count)| Row {
+        trial: record.trial,
+        low_ns,
+        high_ns,
+        count,
+    })
 }
 
 type Col = Column<Row>;

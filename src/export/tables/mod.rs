@@ -11,8 +11,8 @@ mod trials;
 use std::io;
 use std::path::Path;
 
-use super::table::Table;
 use super::Names;
+use super::table::Table;
 use crate::metrics::TrialRecord;
 
 /// The tables of a results folder being written.

@@ -32,6 +32,8 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::f64("heading_rad", |row| row.state.pose.heading),
         Col::text("role", |row| row.role.into()),
         Col::optional_i32("target", |row| row.state.target.map(i32::from)),
-        Col::list_i32("parents", |row| row.state.parents.iter().map(|parent| parent.0 as i32).collect()),
+        Col::list_i32("parents", |row| {
+            row.state.parents.iter().map(|parent| parent.0 as i32).collect()
+        }),
     ]
 }

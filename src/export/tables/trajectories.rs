@@ -15,7 +15,12 @@ pub struct Row {
 pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
     record.trajectories.iter().flat_map(move |(at, places)| {
         let robots = places.iter().enumerate();
-        robots.map(move |(robot, &place)| Row { trial: record.trial, at: *at, robot, place })
+        robots.map(move |(robot, &place)| Row {
+            trial: record.trial,
+            at: *at,
+            robot,
+            place,
+        })
     })
 }
 
