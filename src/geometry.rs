@@ -19,7 +19,10 @@ pub struct Pose {
 
 impl From<[f64; 3]> for Pose {
     fn from([x, y, heading]: [f64; 3]) -> Self {
-        Self { position: Vec2::new(x, y), heading }
+        Self {
+            position: Vec2::new(x, y),
+            heading,
+        }
     }
 }
 

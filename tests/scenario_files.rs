@@ -330,3 +330,63 @@ fn the_mistake_of_an_override_into_another_model() {
 fn the_mistake_of_an_override_without_a_value() {
     insta::assert_snapshot!(refused(&["radio.loss"]));
 }
+
+fn checked(files: &[PathBuf], overrides: &[&str], resolved: bool) -> (bool, String) {
+    let overrides: Vec<_> = overrides.iter().map(|text| (*text).to_owned()).collect();
+    let mut out = Vec::new();
+    let well = desim::cli::check::check(files, &overrides, resolved, &mut out).unwrap();
+    (well, String::from_utf8(out).unwrap())
+}
+
+#[test]
+fn check_names_the_faults_of_every_file_and_then_those_that_are_well() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = ["a.ron", "b.ron", "c.ron"].map(|name| folder.path().join(name));
+    fs::write(&files[0], BASE.replace("loss:", "los:")).unwrap();
+    fs::write(&files[1], BASE).unwrap();
+    fs::write(
+        &files[2],
+        BASE.replace("range:", "rang:").replace("robots: 40", "robots: 0"),
+    )
+    .unwrap();
+    let (well, text) = checked(&files, &[], false);
+    let order = [
+        "unknown field `los`",
+        "0 is out of range",
+        "unknown field `rang`",
+        "ok ",
+    ]
+    .map(|words| text.find(words));
+    assert!(
+        !well && order.iter().all(Option::is_some) && order.is_sorted(),
+        "{text}"
+    );
+    assert!(text.ends_with("b.ron: base, 1 trial, 40 robots\n"), "{text}");
+}
+
+#[test]
+fn check_resolved_writes_a_scenario_file_with_its_question() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("base.ron");
+    fs::write(&file, BASE).unwrap();
+    let (well, text) = checked(&[file], &["radio.range=3"], true);
+    assert!(well);
+    assert_eq!(question(&text).as_deref(), Some("Does it work?"));
+    assert_eq!(read(&text, &[]).unwrap(), with(&["radio.range=3"]));
+}
+
+#[test]
+fn check_refuses_overrides_that_are_none_before_it_reads_files() {
+    let (well, text) = checked(&[PathBuf::from("none.ron")], &["a", "b"], false);
+    assert!(
+        !well && text.contains("--set a: no `=`") && text.contains("--set b: no `=`") && !text.contains("none.ron")
+    );
+}
+
+#[test]
+fn the_schema_is_printed_as_json() {
+    let mut out = Vec::new();
+    desim::cli::schema::schema(&mut out).unwrap();
+    let printed: serde_json::Value = serde_json::from_slice(&out).unwrap();
+    assert_eq!(&printed, json_schema().as_value());
+}

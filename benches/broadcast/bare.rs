@@ -45,7 +45,10 @@ pub fn run(workload: &Workload) -> Counts {
     for robot in 0..workload.places.len() as u64 {
         heap.push(Reverse((random.random_range(0..PERIOD), SEND | robot)));
     }
-    let mut counts = Counts { deliveries: 0, suspicions: 0 };
+    let mut counts = Counts {
+        deliveries: 0,
+        suspicions: 0,
+    };
     while let Some(Reverse((now, event))) = heap.pop() {
         if now > end {
             break;
@@ -109,5 +112,9 @@ fn links(workload: &Workload) -> Links {
         }
         first.push(count);
     }
-    Links { first, last_heard: vec![NEVER; count as usize], timed: vec![false; count as usize] }
+    Links {
+        first,
+        last_heard: vec![NEVER; count as usize],
+        timed: vec![false; count as usize],
+    }
 }

@@ -45,7 +45,9 @@ fn run_one(program: &str, robots: u32) -> Sample {
 }
 
 fn compare(rounds: usize) {
-    println!("broadcast: 12 neighbours, loss 0.2, latency 10 ± 3 ms, timeout 1.0 s; user CPU of one process, median of {rounds} rounds\n");
+    println!(
+        "broadcast: 12 neighbours, loss 0.2, latency 10 ± 3 ms, timeout 1.0 s; user CPU of one process, median of {rounds} rounds\n"
+    );
     println!(
         "{:>7}  {:8} {:>12} {:>14} {:>10} {:>12} {:>14} {:>11}",
         "robots", "program", "deliveries", "ns/delivery", "of bare", "per second", "peak memory", "suspicions"
@@ -53,7 +55,10 @@ fn compare(rounds: usize) {
     for robots in SIZES {
         let results: Vec<Vec<Sample>> = measure::rounds(rounds, &PROGRAMS, robots);
         for (program, samples) in PROGRAMS.iter().zip(&results) {
-            let ratios = samples.iter().zip(&results[0]).map(|(sample, bare)| sample.nanos() / bare.nanos());
+            let ratios = samples
+                .iter()
+                .zip(&results[0])
+                .map(|(sample, bare)| sample.nanos() / bare.nanos());
             let nanos = measure::median(samples.iter().map(Sample::nanos));
             let sample = &samples[0];
             println!(

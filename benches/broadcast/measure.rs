@@ -21,13 +21,21 @@ impl Sample {
     }
 
     pub fn to_line(&self) -> String {
-        format!("{} {} {} {}", self.deliveries, self.suspicions, self.user_nanos, self.peak_kib)
+        format!(
+            "{} {} {} {}",
+            self.deliveries, self.suspicions, self.user_nanos, self.peak_kib
+        )
     }
 
     fn of_line(line: &str) -> Self {
         let mut words = line.split_whitespace().map(|word| word.parse().expect("a number"));
         let mut next = || words.next().expect("four numbers");
-        Self { deliveries: next(), suspicions: next(), user_nanos: next(), peak_kib: next() }
+        Self {
+            deliveries: next(),
+            suspicions: next(),
+            user_nanos: next(),
+            peak_kib: next(),
+        }
     }
 }
 
@@ -67,7 +75,11 @@ fn in_child(program: &str, robots: u32) -> Sample {
         .args(["--program", program, "--robots", &robots.to_string()])
         .output()
         .expect("this program can be run again");
-    assert!(child.status.success(), "{program} failed: {}", String::from_utf8_lossy(&child.stderr));
+    assert!(
+        child.status.success(),
+        "{program} failed: {}",
+        String::from_utf8_lossy(&child.stderr)
+    );
     Sample::of_line(&String::from_utf8_lossy(&child.stdout))
 }
 

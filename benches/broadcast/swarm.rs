@@ -25,9 +25,19 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
     let period = Span::from_secs(PERIOD_S);
     let detector = DetectorConfig::Timeout(Positive::new(TIMEOUT_S));
     let settings = Rc::new(Settings::new(&GossipConfig::default(), &detector, period));
-    let robots = workload.places.iter().map(|_| Heartbeat::new(Rc::clone(&settings))).collect();
-    let poses = workload.places.iter().map(|&position| Pose { position, heading: 0.0 }).collect();
-    let record = setup.run(poses, robots, driver, &CancellationToken::new()).expect("the run reaches its end");
+    let robots = workload
+        .places
+        .iter()
+        .map(|_| Heartbeat::new(Rc::clone(&settings)))
+        .collect();
+    let poses = workload
+        .places
+        .iter()
+        .map(|&position| Pose { position, heading: 0.0 })
+        .collect();
+    let record = setup
+        .run(poses, robots, driver, &CancellationToken::new())
+        .expect("the run reaches its end");
     Counts {
         deliveries: record.ledger.iter().map(|topic| topic.delivered).sum(),
         suspicions: record.suspicions,
@@ -39,8 +49,15 @@ fn setup(workload: &Workload) -> Setup {
     Setup {
         seed: SEED,
         time_limit: Span::from_secs(workload.seconds),
-        arena: ArenaConfig { size: (side, side), ..ArenaConfig::default() },
-        control: ControlConfig { period: Positive::new(PERIOD_S), phase: PhaseConfig::Random, ..ControlConfig::default() },
+        arena: ArenaConfig {
+            size: (side, side),
+            ..ArenaConfig::default()
+        },
+        control: ControlConfig {
+            period: Positive::new(PERIOD_S),
+            phase: PhaseConfig::Random,
+            ..ControlConfig::default()
+        },
         radio: RadioConfig {
             range: Positive::new(RANGE_M),
             loss: LossConfig::Bernoulli(Probability::new(LOSS_PROBABILITY)),
@@ -52,7 +69,10 @@ fn setup(workload: &Workload) -> Setup {
             ..RadioConfig::default()
         },
         // Connectivity is no part of the workload.
-        metrics: MetricsConfig { sample_interval: NonNegative::new(0.0), ..MetricsConfig::default() },
+        metrics: MetricsConfig {
+            sample_interval: NonNegative::new(0.0),
+            ..MetricsConfig::default()
+        },
         ..Setup::default()
     }
 }

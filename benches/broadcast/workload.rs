@@ -41,7 +41,11 @@ impl Workload {
             })
             .collect();
         let seconds = if robots < 1_280 { 60.0 } else { 6.0 };
-        Self { side_m, places, seconds }
+        Self {
+            side_m,
+            places,
+            seconds,
+        }
     }
 }
 

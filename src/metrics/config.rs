@@ -3,14 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::{NonNegative, Positive};
+use crate::quantity::NonNegative;
 
 /// What is measured and when a mission counts as complete.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MetricsConfig {
-    /// Seconds between samples of connectivity and positions.
-    pub sample_interval: Positive,
+    /// Seconds between samples of connectivity and positions; 0 for no samples.
+    pub sample_interval: NonNegative,
     /// How long every target must be held with its links before the mission counts as complete, in seconds; the run then ends.
     pub hold: NonNegative,
 }
@@ -18,7 +18,7 @@ pub struct MetricsConfig {
 impl Default for MetricsConfig {
     fn default() -> Self {
         Self {
-            sample_interval: Positive::new(1.0),
+            sample_interval: NonNegative::new(1.0),
             hold: NonNegative::new(10.0),
         }
     }

@@ -139,7 +139,9 @@ mod tests {
 
     fn histogram_of(nanos: &[u64]) -> LatencyHistogram {
         let mut histogram = LatencyHistogram::default();
-        nanos.iter().for_each(|&n| histogram.record(Span::from_nanos(n)));
+        for &n in nanos {
+            histogram.record(Span::from_nanos(n));
+        }
         histogram
     }
 

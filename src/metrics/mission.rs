@@ -239,29 +239,32 @@ mod tests {
         assert_eq!(mission(2).links(stage.scene()), [2]);
     }
 
+    fn assert_fails_when(what: &str, wreck: impl FnOnce(&mut Stage)) {
+        let mut stage = Stage::new();
+        wreck(&mut stage);
+        assert!(!stage.accomplishes(&mission(2)), "{what}");
+    }
+
     #[test]
     fn each_condition_alone_can_fail_the_mission() {
-        let wrecks: [(&str, fn(&mut Stage)); 6] = [
-            ("the worker is away", |stage| stage.positions[3].x = 2.85),
-            ("a parent is beyond d_c", |stage| stage.positions[1].y = 1.1),
-            ("a relay is out of the root's range", |stage| {
-                stage.positions[0].x = -0.5
-            }),
-            ("a relay has no parent", |stage| {
-                stage.reports.note(ActorId(1), &Note::Parents(vec![]))
-            }),
-            ("the chains share a relay", |stage| {
-                stage.reports.note(ActorId(1), &Note::Parents(vec![ActorId(2)]));
-            }),
-            ("the worker works for no target", |stage| {
-                stage.reports.note(ActorId(3), &Note::Target(None))
-            }),
-        ];
-        for (what, wreck) in wrecks {
-            let mut stage = Stage::new();
-            wreck(&mut stage);
-            assert!(!stage.accomplishes(&mission(2)), "{what}");
-        }
+        let parents = |robot, ids: &[u32]| {
+            let note = Note::Parents(ids.iter().copied().map(ActorId).collect());
+            move |stage: &mut Stage| stage.reports.note(ActorId(robot), &note)
+        };
+        assert_fails_when("the worker is away", |stage| stage.positions[3].x = 2.85);
+        assert_fails_when("a parent is beyond d_c", |stage| stage.positions[1].y = 1.1);
+        assert_fails_when("the relays are out of the root's range", |stage| {
+            stage.positions[0].x = -0.5;
+        });
+        assert_fails_when("a relay has no parent", parents(1, &[]));
+        assert_fails_when("the chains share a relay", parents(1, &[2]));
+        assert_fails_when("the worker has one parent", parents(3, &[1]));
+        assert_fails_when("the worker works for no target", |stage| {
+            stage.reports.note(ActorId(3), &Note::Target(None));
+        });
+        assert_fails_when("the worker has another role", |stage| {
+            stage.reports.note(ActorId(3), &Note::Role(Role(0)));
+        });
     }
 
     #[test]

@@ -35,6 +35,8 @@ pub struct TrialRecord {
     pub traffic: Vec<TrafficRow>,
     /// Time from the start of a transmission to its arrival, of all delivered frames.
     pub latency: LatencyHistogram,
+    /// Times that a robot came to believe that another was down.
+    pub suspicions: u64,
     /// Connectivity at each sample time.
     pub connectivity: Vec<ConnectivitySample>,
     /// Robots at the end, in order of ids.

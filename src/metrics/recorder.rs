@@ -63,6 +63,7 @@ pub struct Recorder {
     offered: Vec<u64>,
     in_flight: Vec<u64>,
     reports: Reports,
+    suspicions: u64,
     judge: Option<Judge>,
     connectivity: Vec<ConnectivitySample>,
     trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
@@ -84,6 +85,7 @@ impl Recorder {
             offered: vec![0; layout.topics],
             in_flight: vec![0; layout.topics],
             reports: Reports::new(layout.robots),
+            suspicions: 0,
             judge: layout
                 .mission
                 .map(|mission| Judge::new(mission, hold, layout.control_period)),
@@ -132,6 +134,7 @@ impl Recorder {
         if let Note::Role(role) = note {
             self.traffic.enter(robot, *role);
         }
+        self.suspicions += u64::from(matches!(note, Note::Suspects(_)));
         self.reports.note(robot, note);
     }
 
@@ -206,6 +209,7 @@ impl Recorder {
             ledger,
             traffic,
             latency: self.latency,
+            suspicions: self.suspicions,
             connectivity: self.connectivity,
             robots: robots(self.reports, end.poses),
             trajectories: self.trajectories,
@@ -343,7 +347,10 @@ mod tests {
         assert!((complete.lambda2 - 3.0).abs() < 1e-9, "a triangle");
         assert_eq!((apart.lambda2, apart.components), (0.0, 3));
         assert_eq!((&path.roles[..], &complete.roles[..]), (&[3, 0][..], &[2, 1][..]));
-        assert_eq!(record.trajectories[1].1[2], [1.0, 0.0]);
+        assert_eq!(
+            record.trajectories[1].1[2].map(f32::to_bits),
+            [1.0_f32, 0.0].map(f32::to_bits)
+        );
         assert_eq!(record.robots[1].role, 1);
     }
 

@@ -7,7 +7,7 @@ use crate::radio::LossCause;
 use super::record::{TrafficRow, Volume};
 
 /// Frames and their payload; headers follow from the number of frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Count {
     frames: u64,
     payload_bytes: u64,
@@ -29,34 +29,32 @@ impl Count {
     }
 }
 
-/// Traffic of one robot while in one role, on one topic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Cell {
-    sent: Count,
-    received: Count,
-    lost: [Count; LossCause::ALL.len()],
-}
-
-/// The traffic of a trial, dense in robots × roles × topics.
+/// The traffic of a trial, dense in robots × roles × topics. What is sent, received and lost stands apart: receptions,
+/// by far the most, then share a table small enough to stay in the cache.
 #[derive(Debug)]
 pub(super) struct Traffic {
     roles: usize,
     topics: usize,
     header_bytes: u16,
-    cells: Vec<Cell>,
-    /// Where the cells of each robot's present role begin.
-    rows: Vec<u32>,
+    sent: Vec<Count>,
+    received: Vec<Count>,
+    lost: Vec<[Count; LossCause::ALL.len()]>,
+    /// Where the cells of each robot's present role begin in these tables.
+    starts: Vec<u32>,
 }
 
 impl Traffic {
     /// No traffic yet, every robot in the first role.
     pub(super) fn new(robots: usize, roles: usize, topics: usize, header_bytes: u16) -> Self {
+        let cells = robots * roles * topics;
         Self {
             roles,
             topics,
             header_bytes,
-            cells: vec![Cell::default(); robots * roles * topics],
-            rows: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
+            sent: vec![Count::default(); cells],
+            received: vec![Count::default(); cells],
+            lost: vec![[Count::default(); LossCause::ALL.len()]; cells],
+            starts: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
         }
     }
 
@@ -71,52 +69,62 @@ impl Traffic {
             "role {role} reported by robot {robot}, but the protocol has {} roles",
             self.roles
         );
-        self.rows[robot.index()] = ((robot.index() * self.roles + role) * self.topics) as u32;
+        self.starts[robot.index()] = ((robot.index() * self.roles + role) * self.topics) as u32;
     }
 
     #[inline]
     pub(super) fn sent(&mut self, robot: ActorId, topic: Topic, payload_bytes: u32) {
-        self.cell(robot, topic).sent.add(payload_bytes);
+        let cell = self.cell(robot, topic);
+        self.sent[cell].add(payload_bytes);
     }
 
     #[inline]
     pub(super) fn received(&mut self, robot: ActorId, topic: Topic, payload_bytes: u32) {
-        self.cell(robot, topic).received.add(payload_bytes);
+        let cell = self.cell(robot, topic);
+        self.received[cell].add(payload_bytes);
     }
 
     #[inline]
     pub(super) fn lost(&mut self, robot: ActorId, topic: Topic, cause: LossCause, payload_bytes: u32) {
-        self.cell(robot, topic).lost[cause as usize].add(payload_bytes);
+        let cell = self.cell(robot, topic);
+        self.lost[cell][cause as usize].add(payload_bytes);
     }
 
     #[inline]
-    fn cell(&mut self, robot: ActorId, topic: Topic) -> &mut Cell {
+    fn cell(&self, robot: ActorId, topic: Topic) -> usize {
         debug_assert!(
             usize::from(topic.0) < self.topics,
             "topic {} of {}",
             topic.0,
             self.topics
         );
-        &mut self.cells[self.rows[robot.index()] as usize + usize::from(topic.0)]
+        self.starts[robot.index()] as usize + usize::from(topic.0)
     }
 
     /// The cells that saw traffic, by robot, role, topic.
     pub(super) fn rows(&self) -> Vec<TrafficRow> {
+        (0..self.sent.len())
+            .filter(|&cell| self.saw_traffic(cell))
+            .map(|cell| self.row(cell))
+            .collect()
+    }
+
+    fn saw_traffic(&self, cell: usize) -> bool {
+        let lost = self.lost[cell].iter().any(|count| count.frames > 0);
+        lost || self.sent[cell].frames > 0 || self.received[cell].frames > 0
+    }
+
+    fn row(&self, cell: usize) -> TrafficRow {
         let per_robot = self.roles * self.topics;
-        let used = self
-            .cells
-            .iter()
-            .enumerate()
-            .filter(|(_, cell)| **cell != Cell::default());
-        used.map(|(index, cell)| TrafficRow {
-            robot: ActorId((index / per_robot) as u32),
-            role: (index % per_robot / self.topics) as u8,
-            topic: (index % self.topics) as u8,
-            sent: cell.sent.volume(self.header_bytes),
-            received: cell.received.volume(self.header_bytes),
-            lost: cell.lost.map(|count| count.volume(self.header_bytes)),
-        })
-        .collect()
+        let volume = |count: Count| count.volume(self.header_bytes);
+        TrafficRow {
+            robot: ActorId((cell / per_robot) as u32),
+            role: (cell % per_robot / self.topics) as u8,
+            topic: (cell % self.topics) as u8,
+            sent: volume(self.sent[cell]),
+            received: volume(self.received[cell]),
+            lost: self.lost[cell].map(volume),
+        }
     }
 }
 

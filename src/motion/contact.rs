@@ -1,9 +1,10 @@
 //! Contacts: corrects the velocities of a tick so that no bodies overlap at its end.
 //!
 //! Momentum-free and position-based: places that the velocities lead to are pushed apart, half each between robots,
-//! wholly off walls and obstacles, for a few rounds. No robot is pushed further than it could have driven. If rounds
-//! run out before every overlap is gone, the robots left in one stand still for the tick: they are jammed, and where
-//! they stood was free. So the promise is kept whatever the crowd.
+//! wholly off walls and obstacles, for a few rounds. No robot is pushed further than it could have driven. Robots still
+//! in an overlap after that are jammed: they are drawn half-way back to where they stand, which was free, and pushing
+//! apart goes on from there, so that a packed crowd creeps into place. Whoever is jammed to the last stands still for
+//! the tick. So the promise of [`OVERLAP_TOLERANCE`] is kept whatever the crowd.
 
 use super::arena::Arena;
 use super::grid::Grid;
@@ -12,10 +13,10 @@ use crate::geometry::{Vec2, clamp_length};
 /// By how much bodies may overlap at a tick, as a share of a robot's radius.
 pub const OVERLAP_TOLERANCE: f64 = 0.01;
 
-/// Rounds of pushing apart before what still overlaps counts as jammed.
+/// Rounds of pushing apart before robots that still overlap count as jammed.
 const ROUNDS: u32 = 12;
-/// Times that the jammed are asked to drive half as far before they are held.
-const ATTEMPTS: u32 = 5;
+/// Times that the jammed are drawn half-way back before they are held.
+const ATTEMPTS: u32 = 8;
 /// Rounds end when no overlap is deeper than this share of the tolerance.
 const SETTLED: f64 = 0.5;
 
@@ -37,8 +38,6 @@ pub(super) struct Contacts {
 struct Member {
     robot: u32,
     start: Vec2,
-    /// Where its drive takes it, relative to where it starts.
-    drive: Vec2,
     end: Vec2,
     jammed: bool,
 }
@@ -95,12 +94,11 @@ impl Contacts {
             if *place == ABSENT {
                 *place = group.len() as u32;
                 let start = positions[robot as usize];
-                let drive = velocities[robot as usize] * *tick;
+                let end = start + velocities[robot as usize] * *tick;
                 group.push(Member {
                     robot,
                     start,
-                    drive,
-                    end: start,
+                    end,
                     jammed: false,
                 });
             }
@@ -122,7 +120,7 @@ impl Contacts {
         }
     }
 
-    /// Looks for places without overlap, asking less of the jammed each time that rounds run out.
+    /// Looks for places without overlap, drawing the jammed back each time that rounds run out.
     fn resolve(&mut self, arena: &Arena) {
         for _ in 0..ATTEMPTS {
             self.push_apart(arena);
@@ -130,7 +128,7 @@ impl Contacts {
             let mut jammed = false;
             for member in &mut self.group {
                 if std::mem::take(&mut member.jammed) {
-                    member.drive /= 2.0;
+                    member.end = (member.start + member.end) / 2.0;
                     jammed = true;
                 }
             }
@@ -141,11 +139,8 @@ impl Contacts {
         self.hold_the_jammed(arena);
     }
 
-    /// Sends every member where it drives, then pushes apart what overlaps.
+    /// Pushes apart what overlaps, in the order of pairs, then of members.
     fn push_apart(&mut self, arena: &Arena) {
-        for member in &mut self.group {
-            member.end = member.start + member.drive;
-        }
         for _ in 0..ROUNDS {
             let mut deepest = 0.0_f64;
             for &(a, b) in &self.pairs {

@@ -88,8 +88,8 @@ pub fn deploy(
 ) -> Result<Vec<Pose>, DeployError> {
     let site = Site::new(arena, robots, body_radius);
     let places = match config {
-        DeployConfig::Cluster { radius } => site.scatter(Region::Disc(radius.get()), &streams.keyed(PLACE)),
-        DeployConfig::Uniform => site.scatter(Region::Arena, &streams.keyed(PLACE)),
+        DeployConfig::Cluster { radius } => site.scatter(Region::Disc(radius.get()), streams.keyed(PLACE)),
+        DeployConfig::Uniform => site.scatter(Region::Arena, streams.keyed(PLACE)),
         DeployConfig::At(places) => site.at(places),
     }?;
     let headings = streams.keyed(HEADING);
@@ -134,7 +134,7 @@ impl Site {
         }
     }
 
-    fn scatter(&self, region: Region, streams: &KeyedStreams) -> Result<Vec<Vec2>, DeployError> {
+    fn scatter(&self, region: Region, streams: KeyedStreams) -> Result<Vec<Vec2>, DeployError> {
         let room = self.arena.half().add_scalar(-self.body_radius);
         let (half, radius) = match region {
             Region::Arena => (room, f64::INFINITY),
@@ -154,7 +154,7 @@ impl Site {
     }
 
     /// A free place for `robot`, uniform over what lies both between −`half` and `half` and within `radius`.
-    fn find(&self, robot: u32, half: Vec2, radius: f64, streams: &KeyedStreams, occupancy: &Occupancy) -> Option<Vec2> {
+    fn find(&self, robot: u32, half: Vec2, radius: f64, streams: KeyedStreams, occupancy: &Occupancy) -> Option<Vec2> {
         if half.min() < 0.0 {
             return None;
         }
@@ -217,5 +217,91 @@ impl Site {
                 Region::Disc(_) => "a larger cluster radius or fewer robots or obstacles",
             },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::tests::{assert_mean, square};
+    use crate::quantity::Positive;
+
+    #[test]
+    fn a_cluster_is_uniform_over_its_disc_with_robot_0_at_the_centre() {
+        let config = DeployConfig::Cluster {
+            radius: Positive::new(2.0),
+        };
+        let poses: Vec<Pose> = (0..50)
+            .flat_map(|trial| deploy(&config, &square(10.0), 100, 1e-6, &Streams::new(9, trial)).unwrap())
+            .collect();
+        assert!(poses.iter().step_by(100).all(|pose| pose.position == Vec2::zeros()));
+        let others: Vec<&Pose> = poses
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| index % 100 != 0)
+            .map(|(_, p)| p)
+            .collect();
+        assert!(others.iter().all(|pose| pose.position.norm() <= 2.0));
+        // In a disc the squared distance to the centre is uniform on [0, R²]; so are angles and headings on theirs.
+        let of = |measure: fn(&Pose) -> f64| others.iter().map(|pose| measure(pose)).collect::<Vec<_>>();
+        assert_mean(&of(|pose| pose.position.norm_squared()), 2.0);
+        assert_mean(&of(|pose| pose.position.norm_squared().powi(2)), 16.0 / 3.0);
+        assert_mean(&of(|pose| pose.position.y.atan2(pose.position.x)), 0.0);
+        assert_mean(&of(|pose| pose.heading), 0.0);
+        assert_mean(&of(|pose| pose.heading.powi(2)), PI * PI / 3.0);
+    }
+
+    #[test]
+    fn another_robots_place_does_not_change_when_more_are_deployed() {
+        let config = DeployConfig::Cluster {
+            radius: Positive::new(1.5),
+        };
+        let few = deploy(&config, &square(10.0), 20, 0.07, &Streams::new(2, 0)).unwrap();
+        let many = deploy(&config, &square(10.0), 80, 0.07, &Streams::new(2, 0)).unwrap();
+        assert_eq!(few[..], many[..20]);
+    }
+
+    #[test]
+    fn a_cluster_too_small_for_its_robots_is_refused_with_the_remedy() {
+        let config = DeployConfig::Cluster {
+            radius: Positive::new(0.5),
+        };
+        let error = deploy(&config, &square(10.0), 60, 0.07, &Streams::new(1, 0)).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .ends_with("use a larger cluster radius or fewer robots or obstacles"),
+            "{error}"
+        );
+        let narrow = deploy(&DeployConfig::Uniform, &square(0.1), 1, 0.07, &Streams::new(1, 0));
+        assert!(matches!(narrow, Err(DeployError::NoRoom { robot: 0, .. })));
+    }
+
+    #[test]
+    fn listed_places_must_be_one_for_each_robot_inside_the_arena_and_apart() {
+        let at = |places: &[(f64, f64)]| {
+            DeployConfig::At(places.iter().map(|&(x, y)| (Finite::new(x), Finite::new(y))).collect())
+        };
+        let refused = |places: &[(f64, f64)], robots| {
+            deploy(&at(places), &square(2.0), robots, 0.07, &Streams::new(1, 0))
+                .unwrap_err()
+                .to_string()
+        };
+        assert_eq!(
+            refused(&[(0.0, 0.0)], 2),
+            "1 places are listed for 2 robots: list exactly one for each"
+        );
+        assert_eq!(
+            refused(&[(0.0, 0.0), (0.1, 0.0)], 2),
+            "robot 1, at (0.1, 0), would overlap robot 0: move it further away"
+        );
+        assert_eq!(
+            refused(&[(0.95, 0.0)], 1),
+            "robot 0, at (0.95, 0), would overlap a wall or an obstacle: move it further away"
+        );
+        // A row of touching robots is fine, whatever its coordinates round to.
+        let row: Vec<(f64, f64)> = (0..10).map(|index| (0.14 * f64::from(index) - 0.6, 0.93)).collect();
+        let poses = deploy(&at(&row), &square(2.0), 10, 0.07, &Streams::new(1, 0)).unwrap();
+        assert_eq!(poses[3].position, Vec2::new(0.14 * 3.0 - 0.6, 0.93));
     }
 }

@@ -25,7 +25,7 @@ impl Pid {
         let integral = self.integral + error * tick;
         let wanted = gains.p.get() * error + gains.i.get() * integral - gains.d.get() * self.output;
         self.output = wanted.clamp(limits.0, limits.1);
-        if self.output == wanted {
+        if (limits.0..=limits.1).contains(&wanted) {
             self.integral = integral;
         }
         self.output

@@ -24,18 +24,18 @@ impl MotionConfig {
             );
         }
         if speed * tick >= radius {
-            let (slower, shorter) = (radius / tick, radius / speed);
+            let (slower, shorter) = (rounded_down(radius / tick), rounded_down(radius / speed));
             report(
                 "max_speed",
                 format!(
                     "at {speed} m/s a robot drives {} m in a tick of {tick} s and could pass through what is thinner than \
                      its body: use a speed below {slower} m/s, or a tick below {shorter} s",
-                    speed * tick,
+                    rounded_down(speed * tick),
                 ),
             );
         }
         if self.max_turn_rate.get() * tick >= 180.0 {
-            let slower = 180.0 / tick;
+            let slower = rounded_down(180.0 / tick);
             report(
                 "max_turn_rate",
                 format!("a robot must turn by less than 180° in a tick of {tick} s: use less than {slower} °/s"),
@@ -55,9 +55,16 @@ fn unstable(gains: &PidConfig, tick: f64) -> String {
     format!(
         "gains p {p}, i {i}, d {d} are unstable at a tick of {tick} s: lower them; with i and d at 0, p below {} is stable \
          and up to {} does not overshoot",
-        2.0 / tick,
-        1.0 / tick,
+        rounded_down(2.0 / tick),
+        rounded_down(1.0 / tick),
     )
+}
+
+/// `value`, which is above 0, to three digits and not above itself: a limit that is safe to type.
+fn rounded_down(value: f64) -> f64 {
+    let decimals = (2 - value.log10().floor() as i32).max(0);
+    let scale = 10_f64.powi(decimals);
+    (value * scale).floor() / scale
 }
 
 impl ArenaConfig {
@@ -165,4 +172,127 @@ fn place_problem(error: &DeployError) -> Problem {
 fn most_bodies(area: f64, perimeter: f64, body_radius: f64) -> f64 {
     let apart = 2.0 * body_radius;
     (2.0 / 3.0_f64.sqrt() * area / (apart * apart) + perimeter / (2.0 * apart) + 1.0).floor()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quantity::Positive;
+
+    fn at(x: f64, y: f64) -> (Finite, Finite) {
+        (Finite::new(x), Finite::new(y))
+    }
+
+    fn paths(problems: &[Problem]) -> Vec<&str> {
+        problems.iter().map(|(path, _)| path.as_str()).collect()
+    }
+
+    #[test]
+    fn the_defaults_have_no_problems() {
+        let (motion, arena) = (MotionConfig::default(), ArenaConfig::default());
+        assert_eq!(motion.problems(), []);
+        assert_eq!(arena.problems(), []);
+        let deploy = DeployConfig::Cluster {
+            radius: Positive::new(1.5),
+        };
+        assert_eq!(deploy.problems(100, &arena, motion.body_radius.get()), []);
+        assert_eq!(
+            DeployConfig::Uniform.problems(100, &arena, motion.body_radius.get()),
+            []
+        );
+    }
+
+    #[test]
+    fn a_robot_must_not_drive_past_its_own_body_within_a_tick() {
+        let config = MotionConfig {
+            max_speed: Positive::new(0.8),
+            ..MotionConfig::default()
+        };
+        assert_eq!(
+            config.problems(),
+            [(
+                "max_speed".to_owned(),
+                "at 0.8 m/s a robot drives 0.08 m in a tick of 0.1 s and could pass through what is thinner than its \
+                 body: use a speed below 0.7 m/s, or a tick below 0.0875 s"
+                    .to_owned()
+            )]
+        );
+    }
+
+    #[test]
+    fn a_tick_too_long_for_gains_and_turns_is_reported_for_each_of_them() {
+        let config = MotionConfig {
+            tick: Positive::new(1.0),
+            ..MotionConfig::default()
+        };
+        assert_eq!(paths(&config.problems()), ["max_turn_rate", "linear", "angular"]);
+        let config = MotionConfig {
+            tick: Positive::new(1e-10),
+            ..MotionConfig::default()
+        };
+        assert_eq!(paths(&config.problems()), ["tick"]);
+    }
+
+    #[test]
+    fn obstacles_must_lie_in_the_arena_and_have_an_extent() {
+        let arena = ArenaConfig {
+            obstacles: vec![
+                ObstacleConfig::Disc {
+                    at: at(4.0, 4.0),
+                    radius: Positive::new(0.5),
+                },
+                ObstacleConfig::Disc {
+                    at: at(6.0, 0.0),
+                    radius: Positive::new(0.5),
+                },
+                ObstacleConfig::Wall {
+                    from: at(1.0, 1.0),
+                    to: at(1.0, 1.0),
+                },
+            ],
+            ..ArenaConfig::default()
+        };
+        let problems = arena.problems();
+        assert_eq!(paths(&problems), ["obstacles[1]", "obstacles[2]"]);
+        assert_eq!(
+            problems[0].1,
+            "(6, 0) is outside the arena: x reaches from -5 to 5, y from -5 to 5"
+        );
+    }
+
+    #[test]
+    fn a_region_that_cannot_hold_the_robots_is_reported_with_one_that_can() {
+        let arena = ArenaConfig::default();
+        // Seven touching discs just fit with their centres within one diameter of the middle one.
+        let tight = DeployConfig::Cluster {
+            radius: Positive::new(0.14),
+        };
+        assert_eq!(tight.problems(7, &arena, 0.07), []);
+        assert_eq!(
+            tight.problems(9, &arena, 0.07),
+            [(
+                "Cluster.radius".to_owned(),
+                "a radius of 0.14 m holds 7 robots at most: use 0.29 m, or fewer robots".to_owned()
+            )]
+        );
+        assert_eq!(paths(&DeployConfig::Uniform.problems(8000, &arena, 0.07)), ["Uniform"]);
+    }
+
+    #[test]
+    fn every_place_that_is_not_free_is_reported() {
+        let arena = ArenaConfig {
+            obstacles: vec![ObstacleConfig::Disc {
+                at: at(0.0, 0.0),
+                radius: Positive::new(0.5),
+            }],
+            ..ArenaConfig::default()
+        };
+        let listed = DeployConfig::At(vec![at(1.0, 0.0), at(0.1, 0.0), at(1.1, 0.0), at(9.0, 0.0)]);
+        assert_eq!(paths(&listed.problems(4, &arena, 0.07)), ["At[1]", "At[2]", "At[3]"]);
+        assert_eq!(paths(&listed.problems(5, &arena, 0.07)), ["At"]);
+        let cluster = DeployConfig::Cluster {
+            radius: Positive::new(1.0),
+        };
+        assert_eq!(paths(&cluster.problems(4, &arena, 0.07)), ["Cluster"]);
+    }
 }

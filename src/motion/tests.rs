@@ -15,7 +15,7 @@ fn pose(x: f64, y: f64, heading: f64) -> Pose {
     }
 }
 
-fn square(side: f64) -> ArenaConfig {
+pub(super) fn square(side: f64) -> ArenaConfig {
     ArenaConfig {
         size: (Positive::new(side), Positive::new(side)),
         obstacles: Vec::new(),
@@ -193,8 +193,22 @@ fn a_world_that_has_come_to_rest_is_not_rebuilt_again() {
     assert_eq!(world.rebuilds(), rebuilds);
 }
 
+#[test]
+fn robots_are_deployed_clear_of_each_other_and_of_obstacles() {
+    for config in [
+        DeployConfig::Uniform,
+        DeployConfig::Cluster {
+            radius: Positive::new(1.4),
+        },
+    ] {
+        let poses = deploy(&config, &cluttered(), 100, 0.07, &Streams::new(2, 0)).unwrap();
+        let world = World::new(&MotionConfig::default(), &cluttered(), poses, 1.0);
+        assert!(deepest_overlap(&world, &cluttered(), 0.07) <= 0.0);
+    }
+}
+
 /// Random commands for everyone, renewed every few ticks, from a stream of their own.
-fn drive_at_random(world: &mut World, speed: f64, ticks: u32, seed: u64, mut after_tick: impl FnMut(&World)) {
+fn drive_at_random(world: &mut World, limit: f64, ticks: u32, seed: u64, mut after_tick: impl FnMut(&World)) {
     use rand::RngExt;
     const COMMAND: crate::engine::Purpose = crate::engine::Purpose::new("test.command");
     let commands = Streams::new(seed, 0).keyed(COMMAND);
@@ -202,7 +216,7 @@ fn drive_at_random(world: &mut World, speed: f64, ticks: u32, seed: u64, mut aft
         for id in ids(world) {
             let mut draws = commands.at(id.0, 0, tick);
             if draws.random_bool(0.2) {
-                world.command(id, unit(draws.random_range(-PI..PI)) * draws.random_range(0.0..speed));
+                world.command(id, unit(draws.random_range(-PI..PI)) * draws.random_range(0.0..limit));
             }
         }
         world.advance();
@@ -287,7 +301,7 @@ fn the_mean_degree_of_robots_uniform_in_a_square_is_that_of_a_random_geometric_g
 }
 
 /// The mean of `samples` lies within four standard errors of `expected`.
-fn assert_mean(samples: &[f64], expected: f64) {
+pub(super) fn assert_mean(samples: &[f64], expected: f64) {
     let count = samples.len() as f64;
     let mean = samples.iter().sum::<f64>() / count;
     let variance = samples.iter().map(|sample| (sample - mean).powi(2)).sum::<f64>() / (count - 1.0);
@@ -296,99 +310,6 @@ fn assert_mean(samples: &[f64], expected: f64) {
         (mean - expected).abs() < 4.0 * error,
         "mean {mean} ± {error}, expected {expected}"
     );
-}
-
-#[test]
-fn a_cluster_is_uniform_over_its_disc_with_robot_0_at_the_centre() {
-    let config = DeployConfig::Cluster {
-        radius: Positive::new(2.0),
-    };
-    let poses: Vec<Pose> = (0..50)
-        .flat_map(|trial| deploy(&config, &square(10.0), 100, 1e-6, &Streams::new(9, trial)).unwrap())
-        .collect();
-    assert!(poses.iter().step_by(100).all(|pose| pose.position == Vec2::zeros()));
-    let others: Vec<&Pose> = poses
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| index % 100 != 0)
-        .map(|(_, p)| p)
-        .collect();
-    assert!(others.iter().all(|pose| pose.position.norm() <= 2.0));
-    // In a disc the squared distance to the centre is uniform on [0, R²]; so are angles and headings on theirs.
-    let of = |measure: fn(&Pose) -> f64| others.iter().map(|pose| measure(pose)).collect::<Vec<_>>();
-    assert_mean(&of(|pose| pose.position.norm_squared()), 2.0);
-    assert_mean(&of(|pose| pose.position.norm_squared().powi(2)), 16.0 / 3.0);
-    assert_mean(&of(|pose| pose.position.y.atan2(pose.position.x)), 0.0);
-    assert_mean(&of(|pose| pose.heading), 0.0);
-    assert_mean(&of(|pose| pose.heading.powi(2)), PI * PI / 3.0);
-}
-
-#[test]
-fn robots_are_deployed_clear_of_each_other_and_of_obstacles() {
-    for config in [
-        DeployConfig::Uniform,
-        DeployConfig::Cluster {
-            radius: Positive::new(1.4),
-        },
-    ] {
-        let poses = deploy(&config, &cluttered(), 100, 0.07, &Streams::new(2, 0)).unwrap();
-        let world = World::new(&MotionConfig::default(), &cluttered(), poses, 1.0);
-        assert!(deepest_overlap(&world, &cluttered(), 0.07) <= 0.0);
-    }
-}
-
-#[test]
-fn another_robots_place_does_not_change_when_more_are_deployed() {
-    let config = DeployConfig::Cluster {
-        radius: Positive::new(1.5),
-    };
-    let few = deploy(&config, &square(10.0), 20, 0.07, &Streams::new(2, 0)).unwrap();
-    let many = deploy(&config, &square(10.0), 80, 0.07, &Streams::new(2, 0)).unwrap();
-    assert_eq!(few[..], many[..20]);
-}
-
-#[test]
-fn a_cluster_too_small_for_its_robots_is_refused_with_the_remedy() {
-    let config = DeployConfig::Cluster {
-        radius: Positive::new(0.5),
-    };
-    let error = deploy(&config, &square(10.0), 60, 0.07, &Streams::new(1, 0)).unwrap_err();
-    assert!(
-        error
-            .to_string()
-            .ends_with("use a larger cluster radius or fewer robots or obstacles"),
-        "{error}"
-    );
-    let narrow = deploy(&DeployConfig::Uniform, &square(0.1), 1, 0.07, &Streams::new(1, 0));
-    assert!(matches!(narrow, Err(DeployError::NoRoom { robot: 0, .. })));
-}
-
-#[test]
-fn listed_places_must_be_one_for_each_robot_inside_the_arena_and_apart() {
-    let at = |places: &[(f64, f64)]| {
-        DeployConfig::At(places.iter().map(|&(x, y)| (Finite::new(x), Finite::new(y))).collect())
-    };
-    let refused = |places: &[(f64, f64)], robots| {
-        deploy(&at(places), &square(2.0), robots, 0.07, &Streams::new(1, 0))
-            .unwrap_err()
-            .to_string()
-    };
-    assert_eq!(
-        refused(&[(0.0, 0.0)], 2),
-        "1 places are listed for 2 robots: list exactly one for each"
-    );
-    assert_eq!(
-        refused(&[(0.0, 0.0), (0.1, 0.0)], 2),
-        "robot 1, at (0.1, 0), would overlap robot 0: move it further away"
-    );
-    assert_eq!(
-        refused(&[(0.95, 0.0)], 1),
-        "robot 0, at (0.95, 0), would overlap a wall or an obstacle: move it further away"
-    );
-    // A row of touching robots is fine, whatever its coordinates round to.
-    let row: Vec<(f64, f64)> = (0..10).map(|index| (0.14 * f64::from(index) - 0.6, 0.93)).collect();
-    let poses = deploy(&at(&row), &square(2.0), 10, 0.07, &Streams::new(1, 0)).unwrap();
-    assert_eq!(poses[3].position, Vec2::new(0.14 * 3.0 - 0.6, 0.93));
 }
 
 proptest! {

@@ -90,7 +90,9 @@ impl Medium {
         sequence
     }
 
-    #[inline]
+    // Not inlined, the fate goes through memory and back: a fifth more time a reception.
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     fn fate(&mut self, now: SimTime, copy: FrameCopy, listener: Listener) -> Fate {
         if self.loss.drops(copy, listener.sender.norm_squared()) {
             return Fate::Lost(LossCause::Channel);

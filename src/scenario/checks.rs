@@ -16,8 +16,8 @@ pub struct Problem {
     pub path: FieldPath,
     /// What is wrong.
     pub message: String,
-    /// What would be right.
-    pub help: String,
+    /// What would be right, where the message does not say so.
+    pub help: Option<String>,
     /// Other fields that it depends on.
     pub also: Vec<FieldPath>,
 }
@@ -27,9 +27,25 @@ impl Problem {
         Self {
             path: FieldPath::of(path),
             message: message.into(),
-            help: help.into(),
+            help: Some(help.into()),
             also: Vec::new(),
         }
+    }
+
+    /// A problem that a section found in itself, at a path relative to it.
+    fn of_section(section: &str, (path, message): (String, String)) -> Self {
+        let path = FieldPath::of(format!("{section}.{path}").trim_end_matches('.'));
+        Self {
+            message: format!("`{path}`: {message}"),
+            path,
+            help: None,
+            also: Vec::new(),
+        }
+    }
+
+    /// Every field that it depends on, first the one best changed.
+    pub fn involved(&self) -> impl Iterator<Item = &FieldPath> {
+        std::iter::once(&self.path).chain(&self.also)
     }
 
     fn with(mut self, also: &[&str]) -> Self {
@@ -40,15 +56,15 @@ impl Problem {
 
 /// Everything wrong with `scenario`.
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
-    let mut found = Vec::new();
-    found.extend(name(scenario));
-    found.extend(counts(scenario));
+    let mut found = counts(scenario);
     found.extend(periods(scenario));
     if found.is_empty() {
-        // Sizes are computed from counts and periods that hold.
+        // Times and sizes are computed from counts and periods that hold.
         found.extend(times(scenario));
         found.extend(sizes(scenario));
     }
+    found.extend(name(scenario));
+    found.extend(sections(scenario));
     found
 }
 
@@ -73,20 +89,45 @@ fn counts(scenario: &Scenario) -> Vec<Problem> {
     let mut count = |path: &str, value: u32, most: u32| {
         if !(1..=most).contains(&value) {
             let message = format!("{value} is out of range for `{path}`");
-            found.push(Problem::new(path, message, format!("expected a whole number from 1 to {most}")));
+            found.push(Problem::new(
+                path,
+                message,
+                format!("expected a whole number from 1 to {most}"),
+            ));
         }
     };
     count("trials", scenario.trials, limits::TRIALS);
     count("swarm.robots", scenario.swarm.robots, limits::ROBOTS);
-    if let DeployConfig::At(places) = &scenario.swarm.deploy {
-        let robots = scenario.swarm.robots;
-        if places.len() != robots as usize {
-            let message = format!("places: {}, robots: {robots}", places.len());
-            let help = "list one place for each robot, or change `swarm.robots`";
-            found.push(Problem::new("swarm.deploy", message, help).with(&["swarm.robots"]));
-        }
-    }
     found
+}
+
+/// What each section finds wrong with itself.
+fn sections(scenario: &Scenario) -> Vec<Problem> {
+    let Scenario {
+        arena,
+        motion,
+        swarm,
+        radio,
+        ..
+    } = scenario;
+    let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
+    let protocol = match &scenario.protocol {
+        ProtocolConfig::Backbone(backbone) => backbone.problems(swarm.robots, radio.range.get()),
+        ProtocolConfig::Heartbeat => Vec::new(),
+    };
+    let around = ["swarm.robots", "arena.size", "motion.body_radius"];
+    let sections: [(_, _, &[&str]); 5] = [
+        ("arena", arena.problems(), &[]),
+        ("motion", motion.problems(), &[]),
+        ("radio", radio.problems(), &[]),
+        ("swarm.deploy", deploy, &around),
+        ("protocol", protocol, &["swarm.robots", "radio.range"]),
+    ];
+    let found = sections.into_iter().flat_map(|(section, problems, also)| {
+        let placed = move |problem| Problem::of_section(section, problem).with(also);
+        problems.into_iter().map(placed)
+    });
+    found.collect()
 }
 
 fn periods(scenario: &Scenario) -> Vec<Problem> {
@@ -94,12 +135,14 @@ fn periods(scenario: &Scenario) -> Vec<Problem> {
     let periods = [
         ("control.period", scenario.control.period),
         ("motion.tick", scenario.motion.tick),
-        ("metrics.sample_interval", scenario.metrics.sample_interval),
         ("gossip.status.interval", gossip.status.interval),
         ("gossip.strand.interval", gossip.strand.interval),
         ("gossip.request.interval", gossip.request.interval),
     ];
-    let mut found: Vec<_> = periods.into_iter().filter_map(|(path, period)| too_short(path, period)).collect();
+    let mut found: Vec<_> = periods
+        .into_iter()
+        .filter_map(|(path, period)| too_short(path, period))
+        .collect();
     let time_limit = scenario.time_limit.get();
     if time_limit > limits::SECONDS {
         let message = format!("a time limit of {time_limit} s is out of range");
@@ -113,7 +156,11 @@ fn too_short(path: &str, period: Positive) -> Option<Problem> {
     let period = period.get();
     (period < limits::SHORTEST_PERIOD).then(|| {
         let message = format!("`{path}` of {period} s is too short");
-        Problem::new(path, message, format!("expected at least {} s", limits::SHORTEST_PERIOD))
+        Problem::new(
+            path,
+            message,
+            format!("expected at least {} s", limits::SHORTEST_PERIOD),
+        )
     })
 }
 
@@ -123,7 +170,10 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
     let tick = scenario.motion.tick.get();
     let time_limit = scenario.time_limit.get();
     let hold = scenario.metrics.hold.get();
-    if !Span::from_secs(period).as_nanos().is_multiple_of(Span::from_secs(tick).as_nanos()) {
+    if !Span::from_secs(period)
+        .as_nanos()
+        .is_multiple_of(Span::from_secs(tick).as_nanos())
+    {
         let message = format!("a control period of {period} s is no whole number of motion ticks of {tick} s");
         let help = "make `control.period` a multiple of `motion.tick`";
         found.push(Problem::new("control.period", message, help).with(&["motion.tick"]));
@@ -134,9 +184,10 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         found.push(Problem::new("time_limit", message, help).with(&["control.period"]));
     }
     if matches!(scenario.protocol, ProtocolConfig::Backbone(_)) && hold >= time_limit {
-        let message = format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
+        let message =
+            format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
         let help = "make `time_limit` longer, or `metrics.hold` shorter";
-        found.push(Problem::new("time_limit", message, help).with(&["metrics.hold"]));
+        found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
     }
     found
 }
@@ -146,8 +197,22 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
     let time_limit = scenario.time_limit.get();
     let steps = time_limit / scenario.control.period.get();
     let ticks = time_limit / scenario.motion.tick.get();
-    let positions = robots * (time_limit / scenario.metrics.sample_interval.get());
-    let copies = robots * neighbours(scenario);
+    let sample_interval = scenario.metrics.sample_interval.get();
+    let samples = if sample_interval > 0.0 {
+        time_limit / sample_interval
+    } else {
+        0.0
+    };
+    let positions = robots * samples;
+    let gossip = &scenario.gossip;
+    let intervals = [&gossip.status, &gossip.strand, &gossip.request].map(|topic| topic.interval.get());
+    let shortest = intervals
+        .into_iter()
+        .fold(f64::INFINITY, f64::min)
+        .max(scenario.control.period.get());
+    // Frames that a robot has in the air at once.
+    let overlap = 1.0 + scenario.radio.latency.mean().min(time_limit) / shortest;
+    let copies = robots * neighbours(scenario) * overlap;
     let bound = |path: &str, also: &[&str], what: &str, value: f64, most: f64, help: &str| {
         (value > most).then(|| {
             let message = format!("{value:.3e} {what}, more than the {most:.0e} that a trial may have");
@@ -181,11 +246,17 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
         ),
         bound(
             "radio.range",
-            &["swarm.robots", "swarm.deploy", "arena.size", "motion.body_radius"],
-            "copies of frames when every robot broadcasts once",
+            &[
+                "radio.latency",
+                "swarm.robots",
+                "swarm.deploy",
+                "arena.size",
+                "motion.body_radius",
+            ],
+            "copies of frames under way at once",
             copies,
             limits::COPIES,
-            "make `radio.range` shorter, or spread fewer robots over more room",
+            "make `radio.range` or `radio.latency` shorter, or spread fewer robots over more room",
         ),
     ]
     .into_iter()

@@ -2,6 +2,7 @@
 
 use ron::error::{Error, Position, SpannedError};
 
+use super::lines::line_of;
 use super::path::{FieldPath, Step, field, follow, head, path_at};
 use super::shape::Shape;
 use super::token::Span;
@@ -9,6 +10,9 @@ use super::tree::Node;
 
 /// Longest expectation that a message still holds, bytes; a longer one goes into the help.
 const SHORT: usize = 60;
+
+/// Similarity (Jaro and Winkler, from 0 to 1) above which a name may be meant for another.
+const NEAR: f64 = 0.75;
 
 /// What is wrong, before it is placed in a file.
 #[derive(Debug)]
@@ -38,7 +42,11 @@ pub fn explain(error: &SpannedError, reached: &FieldPath, whole: bool, root: &No
         Error::ExpectedDifferentStructName { found, .. } => reader.wrong_name(found, reached),
         Error::Message(message) => reader.refused(message, reached),
         other => {
-            let path = if whole { reached.clone() } else { path_at(root, reader.span.start, text) };
+            let path = if whole {
+                reached.clone()
+            } else {
+                path_at(root, reader.span.start, text)
+            };
             reader.mismatch(other, path)
         }
     }
@@ -54,11 +62,9 @@ impl Reader<'_> {
     fn unknown_field(&self, found: &str, known: &[&str]) -> Finding {
         let path = path_at(self.root, self.span.start, self.text);
         let owner = owner(&path.parent());
-        // A field of another part is a likelier guess than one that is merely spelt alike.
-        let guess = match Shape::scenario().find(found) {
-            Some(elsewhere) => format!(", did you mean `{elsewhere}`?"),
-            None => nearest(found, known),
-        };
+        let elsewhere = Shape::scenario().find(found).map(|path| path.to_string());
+        let guesses: Vec<_> = nearest(found, known).into_iter().chain(elsewhere.as_deref()).collect();
+        let guess = did_you_mean(&guesses);
         Finding {
             message: format!("unknown field `{found}` in {owner}{guess}"),
             help: Some(format!("known fields: {}", known.join(", "))),
@@ -71,7 +77,10 @@ impl Reader<'_> {
     fn unknown_variant(&self, found: &str, known: &[&str], path: &FieldPath) -> Finding {
         let expected = Shape::scenario().at(path).map(Shape::expected);
         Finding {
-            message: format!("`{path}` cannot be `{found}`{}", nearest(found, known)),
+            message: format!(
+                "`{path}` cannot be `{found}`{}",
+                did_you_mean(nearest(found, known).as_slice())
+            ),
             help: Some(format!("expected {}", expected.unwrap_or_else(|| known.join(", ")))),
             path: path.clone(),
             span: self.span.clone(),
@@ -97,7 +106,11 @@ impl Reader<'_> {
     fn duplicate(&self, name: &str, reached: &FieldPath) -> Finding {
         let path = reached.join(Step::Field(name.into()));
         let place = follow(self.root, reached, self.text);
-        let first = place.node.group.as_ref().and_then(|group| field(group, name, self.text));
+        let first = place
+            .node
+            .group
+            .as_ref()
+            .and_then(|group| field(group, name, self.text));
         let line = first.map_or(0, |first| line_of(self.text, first.start()));
         Finding {
             message: format!("field `{name}` is given twice in {}", owner(reached)),
@@ -161,15 +174,20 @@ impl Reader<'_> {
                 format!("`{path}` cannot be `{found}`: expected {expected}"),
                 meaning(&path),
             ),
-            Some(expected) if is_mismatch(error) => {
-                (format!("`{path}` cannot be `{found}`"), Some(format!("expected {expected}")))
-            }
+            Some(expected) if is_mismatch(error) => (
+                format!("`{path}` cannot be `{found}`"),
+                Some(format!("expected {expected}")),
+            ),
             _ => (format!("`{path}` cannot be `{found}`: {error}"), meaning(&path)),
         };
         Finding {
             message,
             help,
-            span: if node.group.is_none() { node.span.clone() } else { head(node) },
+            span: if node.group.is_none() {
+                node.span.clone()
+            } else {
+                head(node)
+            },
             path,
             label: "here".into(),
         }
@@ -232,13 +250,20 @@ fn excerpt(node: &Node, text: &str) -> String {
     }
 }
 
-/// `, did you mean ...?` if a known name is near.
-pub fn nearest(found: &str, known: &[&str]) -> String {
+/// The known name that is nearest to `found`, if one is near.
+pub fn nearest<'k>(found: &str, known: &[&'k str]) -> Option<&'k str> {
     let lower = found.to_lowercase();
-    let scored = known.iter().map(|name| (strsim::jaro_winkler(&lower, &name.to_lowercase()), *name));
-    match scored.max_by(|a, b| a.0.total_cmp(&b.0)) {
-        Some((score, name)) if score > 0.75 => format!(", did you mean `{name}`?"),
-        _ => String::new(),
+    let scored = known
+        .iter()
+        .map(|name| (strsim::jaro_winkler(&lower, &name.to_lowercase()), *name));
+    let best = scored.max_by(|a, b| a.0.total_cmp(&b.0));
+    best.filter(|(score, _)| *score > NEAR).map(|(_, name)| name)
+}
+
+fn did_you_mean(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        names => format!(", did you mean `{}`?", names.join("` or `")),
     }
 }
 
@@ -248,9 +273,4 @@ fn bytes(text: &str, position: Position) -> usize {
     let rest = &text[line..];
     let column = rest.char_indices().nth(position.col - 1);
     column.map_or(text.len(), |(offset, _)| line + offset)
-}
-
-/// The line of a byte, from 1.
-fn line_of(text: &str, at: usize) -> usize {
-    1 + text[..at].matches('\n').count()
 }

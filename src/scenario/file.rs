@@ -74,6 +74,9 @@ pub fn question(text: &str) -> Option<String> {
 }
 
 /// The whole scenario as the text of a scenario file, defaults included. [`parse`] reads it back to an equal one.
+///
+/// # Panics
+/// Never: every value of a scenario has a form in RON.
 #[must_use]
 pub fn to_ron(scenario: &Scenario) -> String {
     let layout = PrettyConfig::new().compact_arrays(true);
@@ -95,7 +98,10 @@ mod tests {
 
     #[test]
     fn the_question_is_the_first_comment_joined_to_one_line() {
-        assert_eq!(question("// Does it\n// work?\n//\n// Notes.\nScenario()").as_deref(), Some("Does it work?"));
+        assert_eq!(
+            question("// Does it\n// work?\n//\n// Notes.\nScenario()").as_deref(),
+            Some("Does it work?")
+        );
         assert_eq!(question("Scenario() // no"), None);
         assert_eq!(question(""), None);
     }

@@ -16,7 +16,7 @@ pub const STEPS: f64 = 1e8;
 pub const ROBOT_STEPS: f64 = 1e10;
 /// Positions kept of a trial, robots times samples.
 pub const SAMPLED_POSITIONS: f64 = 1e8;
-/// Copies of frames under way at once when every robot broadcasts once: robots times robots in range.
+/// Copies of frames under way at once: robots times robots in range times messages within a latency.
 pub const COPIES: f64 = 1e8;
 /// Bytes of a scenario file.
 pub const FILE: u64 = 64 << 20;

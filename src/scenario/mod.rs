@@ -9,7 +9,10 @@
 mod checks;
 mod explain;
 mod file;
+#[cfg(test)]
+mod generated;
 mod limits;
+mod lines;
 mod overrides;
 mod path;
 mod read;

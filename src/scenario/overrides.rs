@@ -94,13 +94,17 @@ impl Override {
     }
 
     /// What a message about this override begins with.
+    #[must_use]
     pub fn prefix(&self) -> String {
         format!("--set {}: ", self.text)
     }
 
     /// Works the override, the `index`th, into `source`. `resolved` is the whole scenario with its defaults, where the
     /// file is one: a field that the file leaves out is then set within its defaults.
-    pub fn apply(&self, index: usize, source: &mut Source, resolved: Option<&str>) -> Result<(), Diagnostic> {
+    ///
+    /// # Errors
+    /// If the path leads into a list or a variant that the file does not have.
+    pub fn apply(&self, index: usize, source: &mut Source, resolved: Option<&str>) -> Result<(), Report> {
         let text = source.text().to_owned();
         let (Some(root), faults) = tree::read(&text) else {
             return Ok(());
@@ -110,11 +114,13 @@ impl Override {
         }
         let edit = Edit { given: self, index };
         let outcome = edit.place(&root, &text, source, resolved);
-        outcome.map_err(|misfit| Diagnostic {
-            message: format!("{}{}", self.prefix(), misfit.message),
-            help: Some(misfit.help),
-            path: Some(self.path.to_string()),
-            place: Some(Place::new("--set", &self.text, self.steps[misfit.step].clone(), "here")),
+        outcome.map_err(|misfit| {
+            Report::from(Diagnostic {
+                message: format!("{}{}", self.prefix(), misfit.message),
+                help: Some(misfit.help),
+                path: Some(self.path.to_string()),
+                place: Some(Place::new("--set", &self.text, self.steps[misfit.step].clone(), "here")),
+            })
         })
     }
 }
@@ -150,7 +156,7 @@ impl Edit<'_> {
                 source.replace(&place.node.span, self.nested(place.steps));
                 Ok(())
             }
-            Step::Field(name) if contents(place.node).is_some() => {
+            Step::Field(name) if takes_fields(place.node) => {
                 let added = self.added(name, place.steps, resolved)?;
                 insert(place.node, source, added);
                 Ok(())
@@ -244,8 +250,10 @@ impl Edit<'_> {
     fn value(&self) -> Piece {
         let span = self.given.value.clone();
         let given = &self.given.text[span.clone()];
-        let bare = given.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter));
-        if bare && Shape::scenario().at(&self.given.path).is_some_and(|shape| shape.is_text()) {
+        let bare = given
+            .chars()
+            .all(|letter| letter.is_alphanumeric() || "_-".contains(letter));
+        if bare && Shape::scenario().at(&self.given.path).is_some_and(Shape::is_text) {
             let index = self.index;
             return Piece {
                 text: format!("{given:?}"),
@@ -260,6 +268,11 @@ impl Edit<'_> {
             },
         }
     }
+}
+
+/// Whether `node` is a struct, and not a list or a variant that holds a lone value.
+fn takes_fields(node: &Node) -> bool {
+    contents(node).is_some_and(|group| group.items.iter().all(|item| item.key.is_some()))
 }
 
 /// Adds a field at the end of what `node` holds.

@@ -142,7 +142,7 @@ pub fn follow<'t>(root: &'t Node, path: &FieldPath, text: &str) -> Place<'t> {
     place
 }
 
-impl<'t> Place<'t> {
+impl Place<'_> {
     /// Takes one step if the file has it.
     fn enter(&mut self, step: &Step, text: &str) -> bool {
         if let Step::Variant(name) = step {

@@ -39,7 +39,7 @@ pub fn parse(name: &str, text: &str, overrides: &[Override]) -> Result<Scenario,
     for (index, given) in overrides.iter().enumerate() {
         let resolved = typed(reader.source.text()).ok().map(|scenario| to_ron(&scenario));
         if let Err(misfit) = given.apply(index, &mut reader.source, resolved.as_deref()) {
-            reader.diagnostics.push(misfit);
+            reader.diagnostics.extend(misfit.diagnostics);
         }
     }
     let scenario = reader.scenario();
@@ -50,11 +50,13 @@ pub fn parse(name: &str, text: &str, overrides: &[Override]) -> Result<Scenario,
 }
 
 /// What serde makes of `text`.
-fn typed(text: &str) -> Result<Scenario, Failure> {
-    let at_start = |error: SpannedError| Failure {
-        error,
-        path: FieldPath::default(),
-        whole: true,
+pub(super) fn typed(text: &str) -> Result<Scenario, Box<Failure>> {
+    let at_start = |error: SpannedError| {
+        Box::new(Failure {
+            error,
+            path: FieldPath::default(),
+            whole: true,
+        })
     };
     let mut reader = ron::Deserializer::from_str_with_options(text, &options()).map_err(at_start)?;
     let mut track = serde_path_to_error::Track::new();
@@ -63,21 +65,37 @@ fn typed(text: &str) -> Result<Scenario, Failure> {
     read.map_err(|code| {
         let path = track.path();
         let unknown = |segment: &_| matches!(segment, serde_path_to_error::Segment::Unknown);
-        Failure {
+        Box::new(Failure {
             error: reader.span_error(code),
             path: FieldPath::reached(&path),
             whole: !path.iter().any(unknown),
-        }
+        })
     })
 }
 
 /// An error of serde, with the path that it had reached.
-struct Failure {
-    error: SpannedError,
+pub(super) struct Failure {
+    pub(super) error: SpannedError,
     path: FieldPath,
     /// Whether the path is known to its last step.
     whole: bool,
 }
+
+/// How a text is changed so that the rest of it can be read. What stands before it keeps its place.
+enum Repair {
+    /// Without this field.
+    LeaveOut(Span),
+    /// With this field, at the end of the scenario.
+    Add(usize, String),
+}
+
+/// Fields that every scenario must have, as they are read on where one is missing: nothing is reported of them.
+const STAND_INS: [(&str, &str); 4] = [
+    ("name", "name: \"scenario\""),
+    ("time_limit", "time_limit: 100.0"),
+    ("swarm", "swarm: (robots: 10, deploy: Uniform)"),
+    ("protocol", "protocol: Backbone(targets: Ring(count: 1, radius: 1.0))"),
+];
 
 struct Reader<'a> {
     name: &'a str,
@@ -98,17 +116,16 @@ impl Reader<'_> {
                     self.check(&scenario, &blanked);
                     return Some(scenario);
                 }
-                Err(failure) => {
-                    let span = self.fault(&failure, &text, &mut blanked)?;
-                    blank(&mut text, &span);
-                }
+                Err(failure) => match self.fault(&failure, &text, &mut blanked)? {
+                    Repair::LeaveOut(span) => blank(&mut text, &span),
+                    Repair::Add(at, field) => text.insert_str(at, &field),
+                },
             }
         }
     }
 
-    /// Reports a failure, unless an earlier one caused it. Answers the field to leave out so that the rest can be read,
-    /// if there is one.
-    fn fault(&mut self, failure: &Failure, text: &str, blanked: &mut Vec<FieldPath>) -> Option<Span> {
+    /// Reports a failure, unless an earlier one caused it. Answers how to read the rest without it, if there is a way.
+    fn fault(&mut self, failure: &Failure, text: &str, blanked: &mut Vec<FieldPath>) -> Option<Repair> {
         let (root, faults) = tree::read(text);
         let Some(root) = root.filter(|_| faults.is_empty()) else {
             self.form(&faults, text);
@@ -123,14 +140,26 @@ impl Reader<'_> {
         };
         let path = field.map(|field| path_at(&root, field.start(), text));
         let caused = missing && blanked.iter().any(|path| stands_for(path, &finding.path));
+        let finding_path = finding.path.clone();
         if !caused {
             self.add(finding);
         }
         if self.diagnostics.len() >= limits::DIAGNOSTICS {
             return None;
         }
+        if let (Error::MissingStructField { field, .. }, None) = (&failure.error.code, field) {
+            let (_, stand_in) = STAND_INS.iter().find(|(name, _)| name == field)?;
+            blanked.push(finding_path);
+            let group = root.group?;
+            let comma = if group.items.last().is_some_and(|last| !last.comma) {
+                ", "
+            } else {
+                ""
+            };
+            return Some(Repair::Add(group.inside.end, format!("{comma}{stand_in}")));
+        }
         blanked.push(path?);
-        field.map(|field| field.start()..field.end)
+        field.map(|field| Repair::LeaveOut(field.start()..field.end))
     }
 
     /// Reports what is wrong with the form of the text.
@@ -163,14 +192,14 @@ impl Reader<'_> {
         let (Some(root), _) = tree::read(&text) else {
             return;
         };
+        let stands = |path: &FieldPath| follow(&root, path, &text).steps == path.0.len();
         let caused = |problem: &Problem| {
-            let near = problem.path.parent();
-            let depends = |path: &FieldPath| {
-                path.parent() == near && !near.0.is_empty()
-                    || path.holds(&problem.path)
-                    || problem.also.iter().any(|also| also.holds(path) || path.holds(also))
-            };
-            blanked.iter().any(depends)
+            problem.involved().any(|path| {
+                // A field that the file leaves out may be the one that is misspelt beside it.
+                let misspelt = |left_out: &FieldPath| !stands(path) && left_out.parent() == path.parent();
+                let touches = |left_out: &FieldPath| left_out.holds(path) || path.holds(left_out);
+                blanked.iter().any(|left_out| touches(left_out) || misspelt(left_out))
+            })
         };
         for problem in problems(scenario).into_iter().filter(|problem| !caused(problem)) {
             let finding = between(problem, &root, &text);
@@ -210,7 +239,7 @@ fn stands_for(blanked: &FieldPath, missing: &FieldPath) -> bool {
     let (blanked, missing) = (blanked.plain(), missing.plain());
     match (blanked.0.last(), missing.0.last()) {
         (Some(Step::Field(found)), Some(Step::Field(known))) if blanked.parent() == missing.parent() => {
-            found == known || !nearest(found, &[known]).is_empty()
+            found == known || nearest(found, &[known]).is_some()
         }
         _ => false,
     }
@@ -222,7 +251,7 @@ fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
         let place = follow(root, path, text);
         place.steps == path.0.len()
     };
-    let path = std::iter::once(&problem.path).chain(&problem.also).find(stands);
+    let path = problem.involved().find(stands);
     let place = follow(root, path.unwrap_or(&problem.path), text);
     let (span, label) = match (path, place.field) {
         (Some(_), _) if place.node.group.is_none() => (place.node.span.clone(), "here".to_owned()),
@@ -235,7 +264,7 @@ fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
     };
     Finding {
         message: problem.message,
-        help: Some(problem.help),
+        help: problem.help,
         path: problem.path,
         span,
         label,

@@ -6,6 +6,8 @@ use std::sync::Arc;
 
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 
+use super::lines::{line_of, line_start};
+
 /// Longest line that is shown around an error, bytes.
 const LONGEST_LINE: usize = 400;
 /// Columns of a report that is not for a terminal.
@@ -44,13 +46,13 @@ impl Place {
     #[must_use]
     pub fn new(name: &str, text: &Arc<str>, span: Range<usize>, label: impl Into<String>) -> Self {
         let start = floor(text, span.start);
-        let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let first = line_start(text, start);
         let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
         let end = floor(text, span.end).clamp(start, line_end);
         Self {
             name: name.into(),
-            line: 1 + text[..start].matches('\n').count(),
-            column: 1 + text[line_start..start].chars().count(),
+            line: line_of(text, start),
+            column: 1 + text[first..start].chars().count(),
             label: label.into(),
             span: start..end,
             text: Arc::clone(text),
@@ -58,7 +60,7 @@ impl Place {
     }
 
     fn is_on_a_short_line(&self) -> bool {
-        let before = self.text[..self.span.start].rfind('\n').map_or(0, |newline| newline + 1);
+        let before = line_start(&self.text, self.span.start);
         let line = self.text[before..].find('\n').unwrap_or(self.text.len() - before);
         line <= LONGEST_LINE
     }

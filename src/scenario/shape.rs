@@ -38,7 +38,7 @@ impl<'s> Shape<'s> {
         match step {
             Step::Field(name) => self.field(name).or_else(|| {
                 // Of an enum whose variant the path leaves out: the first variant that has such a field.
-                let variants = self.choices().filter_map(|choice| choice.payload());
+                let variants = self.choices().filter_map(Self::payload);
                 variants.into_iter().find_map(|variant| variant.field(name))
             }),
             Step::Variant(name) => {
@@ -76,7 +76,14 @@ impl<'s> Shape<'s> {
     /// The name of a variant.
     fn name(self) -> Option<&'s str> {
         let unit = self.here.get("const").and_then(Value::as_str);
-        unit.or_else(|| self.here.get("properties")?.as_object()?.keys().next().map(String::as_str))
+        unit.or_else(|| {
+            self.here
+                .get("properties")?
+                .as_object()?
+                .keys()
+                .next()
+                .map(String::as_str)
+        })
     }
 
     /// What a variant holds.
@@ -97,7 +104,10 @@ impl<'s> Shape<'s> {
     /// Names of the fields of a struct, required ones first.
     pub fn fields(self) -> Vec<&'s str> {
         let all = self.here.get("properties").and_then(Value::as_object);
-        let names: Vec<_> = all.into_iter().flat_map(|fields| fields.keys().map(String::as_str)).collect();
+        let names: Vec<_> = all
+            .into_iter()
+            .flat_map(|fields| fields.keys().map(String::as_str))
+            .collect();
         let (mut required, optional): (Vec<_>, Vec<_>) = names.into_iter().partition(|name| self.requires(name));
         required.extend(optional);
         required
@@ -111,8 +121,14 @@ impl<'s> Shape<'s> {
     }
 
     fn search(self, name: &str, path: &FieldPath, found: &mut Vec<FieldPath>) {
-        let fields = self.fields().into_iter().map(|field| (Step::Field(field.into()), field == name));
-        let variants = self.choices().filter_map(Self::name).map(|name| (Step::Variant(name.into()), false));
+        let fields = self
+            .fields()
+            .into_iter()
+            .map(|field| (Step::Field(field.into()), field == name));
+        let variants = self
+            .choices()
+            .filter_map(Self::name)
+            .map(|name| (Step::Variant(name.into()), false));
         for (step, same) in fields.chain(variants) {
             let next = path.join(step.clone());
             if same {
@@ -138,7 +154,10 @@ impl<'s> Shape<'s> {
 
     /// What a value here looks like, in words: `a number above 0`, `one of None, Bernoulli(...)`.
     pub fn expected(self) -> String {
-        let names: Vec<_> = self.choices().filter_map(|choice| Some(choice.form(choice.name()?))).collect();
+        let names: Vec<_> = self
+            .choices()
+            .filter_map(|choice| Some(choice.form(choice.name()?)))
+            .collect();
         if !names.is_empty() {
             return list("one of", &names);
         }
@@ -160,12 +179,16 @@ impl<'s> Shape<'s> {
 
     fn tuple(self, items: &'s [Value]) -> String {
         let first = items.first().map(|item| self.go(item).expected()).unwrap_or_default();
-        let first = first.strip_prefix("a ").unwrap_or(&first).replacen("number", "numbers", 1);
+        let first = first
+            .strip_prefix("a ")
+            .unwrap_or(&first)
+            .replacen("number", "numbers", 1);
         format!("{} {first}, in round brackets", items.len())
     }
 
     fn form(self, name: &str) -> String {
-        self.payload().map_or_else(|| name.into(), |payload| payload.in_variant(name))
+        self.payload()
+            .map_or_else(|| name.into(), |payload| payload.in_variant(name))
     }
 
     /// What the variant `name` looks like, this being what it holds.

@@ -204,8 +204,24 @@ mod tests {
     #[test]
     fn comments_strings_and_an_attribute_are_seen_for_what_they_are() {
         assert_eq!(
-            words("#![enable(implicit_some)] // a ( here\n(a: \"b)//\\\"\", /* [ /* ( */ */ c: r#\"\"(\"#, d: -1.5e-3)"),
-            ["(", "a", ":", "\"b)//\\\"\"", ",", "c", ":", "r#\"\"(\"#", ",", "d", ":", "-1.5e-3", ")"]
+            words(
+                "#![enable(implicit_some)] // a ( here\n(a: \"b)//\\\"\", /* [ /* ( */ */ c: r#\"\"(\"#, d: -1.5e-3)"
+            ),
+            [
+                "(",
+                "a",
+                ":",
+                "\"b)//\\\"\"",
+                ",",
+                "c",
+                ":",
+                "r#\"\"(\"#",
+                ",",
+                "d",
+                ":",
+                "-1.5e-3",
+                ")"
+            ]
         );
     }
 

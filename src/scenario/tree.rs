@@ -1,6 +1,7 @@
 //! The shape of RON text: which field stands where. Errors found by `ron`, or later, are placed with it. It reads any
 //! text, says all that is wrong with its form, and goes on.
 
+use super::lines::{line_of, swallows};
 use super::token::{Fault, Kind, Span, Token, tokens};
 
 /// How deep values may lie in each other. No scenario needs a tenth of it.
@@ -210,9 +211,9 @@ impl Reader<'_> {
     /// no further in than the line that it opens on.
     fn unclosed(&mut self, opening: &Span, bracket: char, group: &Group) {
         let help = format!("close it with `{}`", closing(bracket));
-        match self.swallows(group) {
+        match swallows(self.text, group) {
             Some((opening, swallowed)) => {
-                let line = self.line(swallowed);
+                let line = line_of(self.text, swallowed);
                 let message = format!("`{}` is not closed before line {line}", &self.text[opening.clone()]);
                 self.fault(opening, message, &help);
             }
@@ -220,32 +221,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The innermost bracket that has a line within it which by its indentation belongs outside, and where that is.
-    fn swallows(&self, group: &Group) -> Option<(Span, usize)> {
-        let inner = group.items.iter().filter_map(|item| item.value.group.as_ref());
-        inner.filter_map(|inner| self.swallows(inner)).next().or_else(|| {
-            let depth = self.indentation(group.opening.start);
-            let mut starts = group.items.iter().map(Item::start);
-            let outside = starts.find(|start| {
-                let line = self.text[..*start].rfind('\n').map_or(0, |newline| newline + 1);
-                line > group.opening.start && self.text[line..*start].trim().is_empty() && *start - line <= depth
-            });
-            outside.map(|start| (group.opening.clone(), start))
-        })
-    }
-
-    /// How far in the line of a byte begins.
-    fn indentation(&self, at: usize) -> usize {
-        let line = self.text[..at].rfind('\n').map_or(0, |newline| newline + 1);
-        self.text[line..].len() - self.text[line..].trim_start().len()
-    }
-
-    fn line(&self, at: usize) -> usize {
-        1 + self.text[..at].matches('\n').count()
-    }
-
     fn wrong_close(&mut self, opening: &Span, bracket: char, found: char) {
-        let line = self.line(opening.start);
+        let line = line_of(self.text, opening.start);
         let message = format!("`{found}` does not close the `{bracket}` of line {line}");
         let span = self.here();
         self.fault(span, message, &format!("close it with `{}`", closing(bracket)));
@@ -281,19 +258,25 @@ impl Reader<'_> {
                 item.comma = true;
             }
             Some(Kind::Close(_)) | None => {}
-            Some(_) => {
-                let before = self.text[self.here()].to_owned();
-                let span = self.here();
-                let after = &self.text[item.value.span.clone()];
-                let help = if after.len() <= 40 && !after.contains('\n') {
-                    format!("write `,` after `{after}`, or remove `{before}`")
-                } else {
-                    format!("write `,` before `{before}`")
-                };
-                self.fault(span, format!("missing `,` before `{before}`"), &help);
-            }
+            Some(_) => self.missing_comma(&item.value),
         }
         Some(item)
+    }
+
+    fn missing_comma(&mut self, value: &Node) {
+        let span = self.here();
+        let before = self.text[span.clone()].to_owned();
+        let after = &self.text[value.span.clone()];
+        let comma = if after.len() <= 40 && !after.contains('\n') {
+            format!("write `,` after `{after}`")
+        } else {
+            format!("write `,` before `{before}`")
+        };
+        let help = match self.peek_second() {
+            Some(Kind::Colon) => comma,
+            _ => format!("{comma}, or remove `{before}`; numbers have no units"),
+        };
+        self.fault(span, format!("missing `,` before `{before}`"), &help);
     }
 
     fn key(&mut self) -> Option<Span> {
@@ -342,7 +325,10 @@ mod tests {
 
     fn faults(text: &str) -> Vec<(usize, String)> {
         let found = read(text).1;
-        found.into_iter().map(|fault| (fault.span.start, fault.message)).collect()
+        found
+            .into_iter()
+            .map(|fault| (fault.span.start, fault.message))
+            .collect()
     }
 
     #[test]
@@ -371,7 +357,10 @@ mod tests {
 
     #[test]
     fn an_open_bracket_is_named_where_it_opens() {
-        assert_eq!(faults("(a: [1, 2)"), [(9, "`)` does not close the `[` of line 1".into())]);
+        assert_eq!(
+            faults("(a: [1, 2)"),
+            [(9, "`)` does not close the `[` of line 1".into())]
+        );
         assert_eq!(faults("S(a: 1"), [(1, "`(` is never closed".into())]);
     }
 

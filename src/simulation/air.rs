@@ -79,7 +79,10 @@ impl<P: Protocol> Air<P> {
         let payload_bytes = self.payload.len() as u32;
         digest.payload(&self.payload);
         // Every receiver gets the same bytes, so they are decoded once for all.
-        let message = self.codec.decode(&mut self.payload)?.ok_or(RunError::Undecodable { topic })?;
+        let message = self
+            .codec
+            .decode(&mut self.payload)?
+            .ok_or(RunError::Undecodable { topic })?;
         recorder.transmitted(sender, topic, payload_bytes);
         recorder.offered(topic, self.listeners.len() as u64);
         let frame = Rc::new(Frame {
@@ -90,7 +93,14 @@ impl<P: Protocol> Air<P> {
             payload_bytes,
             message,
         });
-        let Self { medium, inboxes, listeners, reached, tell_reached, .. } = self;
+        let Self {
+            medium,
+            inboxes,
+            listeners,
+            reached,
+            tell_reached,
+            ..
+        } = self;
         medium.transmit(now, sender, listeners.iter().copied(), |receiver, fate| match fate {
             Fate::Arrives { at, displacement } => {
                 inboxes[receiver.index()].push(Reception {
@@ -147,5 +157,10 @@ impl<P: Protocol> Air<P> {
 
 fn record_delivery<M>(receiver: ActorId, reception: &Reception<M>, recorder: &mut Recorder) {
     let frame = &reception.frame;
-    recorder.delivered(receiver, frame.topic, frame.payload_bytes, reception.at.since(frame.sent_at));
+    recorder.delivered(
+        receiver,
+        frame.topic,
+        frame.payload_bytes,
+        reception.at.since(frame.sent_at),
+    );
 }

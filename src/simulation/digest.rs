@@ -22,7 +22,9 @@ impl Digest {
             Wake::Timer(id) => 1 + u64::from(id.0),
             Wake::Reception => u64::MAX,
         };
-        let velocity = output.velocity.map_or([u64::MAX; 2], |v| [v.x.to_bits(), v.y.to_bits()]);
+        let velocity = output
+            .velocity
+            .map_or([u64::MAX; 2], |v| [v.x.to_bits(), v.y.to_bits()]);
         self.words(&[
             now.as_nanos(),
             u64::from(robot.0),
@@ -56,14 +58,13 @@ impl Digest {
     }
 }
 
-/// Folds an inbox into one word: this runs once a delivered frame, where the hash proper would be felt.
+/// Folds an inbox into one word: this runs once a delivered frame, where the hash proper would be felt. What a frame said
+/// is in its sender's payload, and where its sender stood in the poses, so its identity and its arrival are enough.
 fn receptions<M>(input: &Input<M>) -> u64 {
-    let mix = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
     input.inbox.iter().fold(input.inbox.len() as u64, |hash, reception| {
         let frame = &reception.frame;
-        let [x, y] = reception.displacement.map(|metres| u64::from(metres.to_bits()));
-        let hash = mix(hash, reception.at.as_nanos());
-        let hash = mix(hash, (u64::from(frame.sender.0) << 32) | u64::from(frame.sequence));
-        mix(hash, (x << 32) | y)
+        let identity = (u64::from(frame.sender.0) << 32) | u64::from(frame.sequence);
+        let word = reception.at.as_nanos() ^ identity.wrapping_mul(0xd6e8_feb8_6659_fd93);
+        (hash ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
     })
 }

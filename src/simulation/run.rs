@@ -5,8 +5,8 @@ use tokio_util::sync::CancellationToken;
 use super::air::Air;
 use super::clock::WakeClock;
 use super::digest::Digest;
-use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, SimTime, Span, Streams, Purpose};
-use crate::engine::KeyedStreams;
+use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams};
+use crate::geometry::Vec2;
 use crate::metrics::{Progress, Recorder, RunEnd, TrialRecord};
 use crate::motion::World;
 use crate::protocol::{CodecError, Input, Output, Protocol, Robot, Topic, Wake};
@@ -25,6 +25,9 @@ pub enum RunError {
         /// The message's topic.
         topic: Topic,
     },
+    /// The operating system refused the actors what they need.
+    #[error("actors cannot be started: {0}")]
+    Actors(#[source] std::io::Error),
     /// The run was told to stop.
     #[error("interrupted")]
     Interrupted,
@@ -57,7 +60,7 @@ type JobFor<P> = Job<Input<<P as Protocol>::Message>, Output<<P as Protocol>::Me
 pub struct Rhythm {
     /// From one control step of a robot to its next.
     pub control_period: Span,
-    /// From one sample of connectivity and positions to the next.
+    /// From one sample of connectivity and positions to the next; zero for none.
     pub sample_interval: Span,
     /// When the run ends at the latest.
     pub time_limit: SimTime,
@@ -82,7 +85,7 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     batch: Vec<Box<JobFor<P>>>,
     spare_jobs: Vec<Box<JobFor<P>>>,
     reached: Vec<ActorId>,
-    positions: Vec<crate::geometry::Vec2>,
+    positions: Vec<Vec2>,
     events: u64,
     steps: u64,
 }
@@ -100,7 +103,9 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     ) -> Self {
         let mut queue = EventQueue::with_capacity(first_steps.len() + 3);
         queue.schedule(Event::MotionTick, SimTime::ZERO + world.tick());
-        queue.schedule(Event::Sample, SimTime::ZERO);
+        if rhythm.sample_interval > Span::ZERO {
+            queue.schedule(Event::Sample, SimTime::ZERO);
+        }
         if rhythm.has_mission {
             queue.schedule(Event::Observe, SimTime::ZERO);
         }
@@ -151,7 +156,8 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                 }
                 Event::Observe => {
                     self.locate(now);
-                    if self.recorder.observe(self.steps, &self.positions) == Progress::Complete {
+                    let progress = self.recorder.observe(self.steps, &self.positions);
+                    if matches!(progress, Progress::Complete { .. }) {
                         end = now;
                         break;
                     }
@@ -226,7 +232,12 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
 
     /// Lets a robot's answer take effect, and schedules its next wake.
     fn apply(&mut self, job: &mut JobFor<P>) -> Result<(), RunError> {
-        let Job { actor: robot, now, input, output } = job;
+        let Job {
+            actor: robot,
+            now,
+            input,
+            output,
+        } = job;
         let (robot, now) = (*robot, *now);
         self.digest.wake(now, robot, input, output);
         for note in output.notes.drain(..) {
@@ -237,7 +248,8 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         }
         if !output.broadcasts.is_empty() {
             let messages = output.broadcasts.drain(..);
-            self.air.broadcast(now, robot, messages, &self.world, &mut self.recorder, &mut self.digest)?;
+            self.air
+                .broadcast(now, robot, messages, &self.world, &mut self.recorder, &mut self.digest)?;
         }
         let clock = &mut self.clocks[robot.index()];
         for (id, due) in output.timers.drain(..) {
@@ -264,7 +276,12 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     }
 
     fn locate(&mut self, now: SimTime) {
-        let Self { positions, world, clocks, .. } = self;
+        let Self {
+            positions,
+            world,
+            clocks,
+            ..
+        } = self;
         positions.clear();
         positions.extend((0..clocks.len() as u32).map(|robot| world.position(ActorId(robot), now)));
     }
@@ -272,12 +289,13 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     fn finish(mut self, trial: u32, seed: u64, end: SimTime) -> TrialRecord {
         self.air.settle(end, &mut self.recorder);
         let world = &self.world;
-        let poses = (0..self.clocks.len() as u32).map(|robot| world.pose(ActorId(robot), end)).collect();
+        let poses = (0..self.clocks.len() as u32)
+            .map(|robot| world.pose(ActorId(robot), end))
+            .collect();
         self.recorder.finish(RunEnd {
             trial,
             seed,
             steps: end.as_nanos() / self.rhythm.control_period.as_nanos(),
-            control_period: self.rhythm.control_period,
             simulated: end,
             events: self.events,
             digest: self.digest.finish(),

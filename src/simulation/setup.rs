@@ -7,7 +7,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::air::Air;
 use super::run::{Rhythm, Run, RunError};
-use crate::engine::{ActorId, Actors, Driver, Inline, Purpose, SimTime, Span, Streams};
+use crate::engine::{Actors, Driver, Inline, Purpose, SimTime, Span, Streams};
 use crate::geometry::Pose;
 use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
@@ -86,7 +86,7 @@ impl Setup {
         assert_eq!(poses.len(), robots.len(), "every robot needs a pose");
         let robots = robots.into_iter().map(Robot).collect();
         match driver {
-            DriverKind::Actors => self.run_with(poses, Actors::spawn(robots)?, stop),
+            DriverKind::Actors => self.run_with(poses, Actors::spawn(robots).map_err(RunError::Actors)?, stop),
             DriverKind::Inline => self.run_with(poses, Inline::new(robots), stop),
         }
     }
@@ -102,7 +102,11 @@ impl Setup {
         let first_steps = self.first_steps(robots, &streams);
         let world = World::new(&self.motion, &self.arena, poses, self.radio.range.get());
         let rhythm = self.rhythm();
-        let air = Air::<P>::new(Medium::new(&self.radio, &streams, robots), robots, rhythm.wake_on_reception);
+        let air = Air::<P>::new(
+            Medium::new(&self.radio, &streams, robots),
+            robots,
+            rhythm.wake_on_reception,
+        );
         let recorder = Recorder::new(self.layout::<P>(robots), &self.metrics);
         Run::new(rhythm, driver, world, air, recorder, &streams, &first_steps).to_end(self.trial, self.seed, stop)
     }
@@ -124,6 +128,7 @@ impl Setup {
             roles: P::ROLES.len(),
             header_bytes: self.radio.header_bytes,
             radio_range: self.radio.range.get(),
+            control_period: Span::from_secs(self.control.period.get()),
             mission: self.mission.clone(),
         }
     }

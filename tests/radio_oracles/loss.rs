@@ -82,13 +82,13 @@ fn loss_over_distance_follows_its_power_law() {
         (2.0, 0.5),
     ] {
         let mut medium = medium(&losing(loss.clone()), 2);
-        let mut lost = 0_u32;
+        let mut dropped = 0_u32;
         for frame in 0..n {
             medium.transmit(super::sent(frame), ActorId(0), listeners(1..2, distance), |_, fate| {
-                lost += u32::from(matches!(fate, Fate::Lost(_)));
+                dropped += u32::from(matches!(fate, Fate::Lost(_)));
             });
         }
-        let share = f64::from(lost) / f64::from(n);
+        let share = f64::from(dropped) / f64::from(n);
         let error = (expected * (1.0 - expected) / f64::from(n)).sqrt();
         assert_near("loss at a distance", share, expected, error);
         assert!((loss.mean_loss(distance, 2.0) - expected).abs() < 1e-12);
@@ -178,10 +178,10 @@ fn ends_of_links(loss: &LossConfig, links: u32, lag: u32, listened: bool) -> (Ve
         let end = frame == 0 || frame == lag;
         let hearing = if end || listened { 1..links + 1 } else { 0..0 };
         medium.transmit(super::sent(frame), ActorId(0), listeners(hearing, 1.0), |_, fate| {
-            let lost = f64::from(u8::from(matches!(fate, Fate::Lost(_))));
+            let dropped = f64::from(u8::from(matches!(fate, Fate::Lost(_))));
             match frame {
-                0 => first.push(lost),
-                frame if frame == lag => last.push(lost),
+                0 => first.push(dropped),
+                frame if frame == lag => last.push(dropped),
                 _ => {}
             }
         });

@@ -86,9 +86,9 @@ fn fates(config: &RadioConfig, receivers: u32, frames: u32) -> Vec<Vec<Fate>> {
 
 /// As [`fates`]: which frames were lost.
 fn losses(loss: &LossConfig, receivers: u32, frames: u32) -> Vec<Vec<bool>> {
-    let lost = |link: Vec<Fate>| link.iter().map(|fate| matches!(fate, Fate::Lost(_))).collect();
+    let dropped = |link: Vec<Fate>| link.iter().map(|fate| matches!(fate, Fate::Lost(_))).collect();
     fates(&losing(loss.clone()), receivers, frames)
         .into_iter()
-        .map(lost)
+        .map(dropped)
         .collect()
 }

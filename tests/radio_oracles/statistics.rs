@@ -60,12 +60,12 @@ pub fn kolmogorov_limit() -> f64 {
 #[track_caller]
 pub fn assert_geometric(what: &str, counts: &[u64], q: f64) {
     let total = counts.iter().sum::<u64>() as f64;
-    let cells = (0..).take_while(|&i| total * (1.0 - q) * q.powi(i) >= 10.0).count();
+    let cells = (1.0 + (10.0 / (total * (1.0 - q))).ln() / q.ln()).floor() as usize;
     let tail = counts.iter().skip(cells).sum::<u64>();
     let observed = (0..cells).map(|i| counts.get(i).copied().unwrap_or(0)).chain([tail]);
     let expected = (0..cells)
-        .map(|i| (1.0 - q) * q.powi(i as i32))
-        .chain([q.powi(cells as i32)]);
+        .map(|i| (1.0 - q) * q.powf(i as f64))
+        .chain([q.powf(cells as f64)]);
     let chi_square: f64 = observed
         .zip(expected)
         .map(|(seen, share)| (seen as f64 - total * share).powi(2) / (total * share))

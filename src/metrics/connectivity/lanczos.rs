@@ -35,7 +35,7 @@ pub(super) fn least_positive_eigenvalue(graph: &Graph) -> f64 {
             }
         }
         ritz.beside.push(length);
-        next.iter_mut().for_each(|x| *x /= length);
+        scale(&mut next, length.recip());
         basis.push(next);
     }
 }
@@ -48,14 +48,22 @@ fn start_vector(size: usize) -> Vec<f64> {
         .collect();
     centre(&mut vector);
     let length = dot(&vector, &vector).sqrt();
-    vector.iter_mut().for_each(|x| *x /= length);
+    scale(&mut vector, length.recip());
     vector
+}
+
+fn scale(vector: &mut [f64], factor: f64) {
+    for x in vector {
+        *x *= factor;
+    }
 }
 
 /// Takes the constant part, the Laplacian's null space, out of `vector`.
 fn centre(vector: &mut [f64]) {
     let mean = vector.iter().sum::<f64>() / vector.len() as f64;
-    vector.iter_mut().for_each(|x| *x -= mean);
+    for x in vector {
+        *x -= mean;
+    }
 }
 
 /// Makes `vector` orthogonal to all of `basis` and to the constant vectors, twice since once loses digits, and gives
@@ -65,7 +73,9 @@ fn orthogonalise(vector: &mut [f64], basis: &[Vec<f64>]) -> f64 {
         centre(vector);
         for known in basis {
             let share = dot(vector, known);
-            vector.iter_mut().zip(known).for_each(|(x, y)| *x -= share * y);
+            for (x, y) in vector.iter_mut().zip(known) {
+                *x -= share * y;
+            }
         }
     }
     dot(vector, vector).sqrt()

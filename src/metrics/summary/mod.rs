@@ -13,6 +13,8 @@ pub use quantity::{Measured, Named, Quantity, Unit};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::engine::Span;
+
 use super::latency::LatencyHistogram;
 use super::record::{Outcome, TrialRecord};
 use super::statistics::{Estimate, Observation, mean, median, median_survival, proportion};
@@ -179,8 +181,10 @@ impl StepsToCompletion {
 impl Latency {
     fn of(records: &[TrialRecord]) -> Self {
         let mut all = LatencyHistogram::default();
-        records.iter().for_each(|record| all.merge(&record.latency));
-        let quantile = |q| all.quantile(q).map(|latency| latency.as_secs());
+        for record in records {
+            all.merge(&record.latency);
+        }
+        let quantile = |q| all.quantile(q).map(Span::as_secs);
         Self {
             p50: quantile(0.5),
             p95: quantile(0.95),

@@ -1,7 +1,7 @@
 use serde_json::Value;
 
 use super::*;
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime};
 use crate::geometry::{Pose, Vec2};
 use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, RunEnd};
 use crate::protocol::{Note, Role, Topic};

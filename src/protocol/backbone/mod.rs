@@ -115,6 +115,12 @@ impl Backbone {
         }
     }
 
+    /// The robot that every chain ends at.
+    #[must_use]
+    pub fn root(&self) -> ActorId {
+        self.known.mission.root
+    }
+
     fn hear(&mut self, reception: &Reception<Message>, out: &mut Vec<Message>) {
         let frame = &reception.frame;
         match &frame.message {
