@@ -166,9 +166,20 @@ const HEADER: [&str; 9] = [
 ];
 
 fn row(name: &str, directions: &Directions, lost: &str, header: &str) -> [String; 9] {
-    let [a, b, c] = spread(&directions.tx_bytes_per_step);
-    let [d, e, f] = spread(&directions.rx_bytes_per_step);
-    [name.to_owned(), a, b, c, d, e, f, lost.to_owned(), header.to_owned()]
+    let [sent_least, sent, sent_most] = spread(&directions.tx_bytes_per_step);
+    let [least, received, most] = spread(&directions.rx_bytes_per_step);
+    let (lost, header) = (lost.to_owned(), header.to_owned());
+    [
+        name.to_owned(),
+        sent_least,
+        sent,
+        sent_most,
+        least,
+        received,
+        most,
+        lost,
+        header,
+    ]
 }
 
 fn spread(spread: &Spread) -> [String; 3] {
