@@ -70,7 +70,9 @@ impl Folder {
     /// The folder at `dir`, which need not exist.
     #[must_use]
     pub fn new(dir: PathBuf) -> Self {
-        let new = dir.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
+        let new = dir
+            .ancestors()
+            .take_while(|path| !path.as_os_str().is_empty() && !path.exists());
         let new = new.map(Path::to_owned).collect();
         Self { dir, new }
     }
@@ -148,7 +150,10 @@ impl Folder {
             gone(fs::remove_file(&path)).map_err(failed("delete", &path))?;
         }
         // Whatever else has come into them meanwhile keeps them.
-        self.new.iter().take_while(|path| fs::remove_dir(path).is_ok()).for_each(drop);
+        self.new
+            .iter()
+            .take_while(|path| fs::remove_dir(path).is_ok())
+            .for_each(drop);
         Ok(())
     }
 

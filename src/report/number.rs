@@ -21,7 +21,7 @@ pub fn count(value: u64) -> String {
 /// A figure that is not negative, with three digits that count, or all of those before the point.
 pub fn figure(value: f64) -> String {
     match value {
-        _ if value == 0.0 => "0".to_owned(),
+        _ if value <= 0.0 => "0".to_owned(),
         _ if value >= 999.5 => count(value.round() as u64),
         _ if value >= 99.95 => format!("{value:.0}"),
         _ if value >= 9.995 => format!("{value:.1}"),
@@ -38,17 +38,17 @@ pub fn maybe(value: Option<f64>) -> String {
 
 /// A share in percent; one that is nearly all is never rounded to all.
 pub fn percent(share: f64) -> String {
-    let percent = share * 100.0;
-    if percent == 0.0 || percent == 100.0 {
-        return format!("{percent:.0} %");
+    match share {
+        _ if share <= 0.0 => "0 %".to_owned(),
+        _ if share >= 1.0 => "100 %".to_owned(),
+        _ => format!("{:.2} %", (share * 100.0).clamp(0.01, 99.99)),
     }
-    format!("{:.2} %", percent.clamp(0.01, 99.99))
 }
 
 /// A duration in the unit that suits it.
 pub fn seconds(value: f64) -> String {
     match value {
-        _ if value == 0.0 => "0 s".to_owned(),
+        _ if value <= 0.0 => "0 s".to_owned(),
         _ if value < 1e-3 => format!("{} µs", figure(value * 1e6)),
         _ if value < 1.0 => format!("{} ms", figure(value * 1e3)),
         _ => format!("{} s", figure(value)),
@@ -77,17 +77,27 @@ mod tests {
     #[test]
     fn figures_keep_three_digits_that_count() {
         let written = [0.0, 0.001_234, 0.123_456, 1.0, 17.25, 99.97, 1400.4, 1_234_567.0].map(figure);
-        assert_eq!(written, ["0", "1.23e-3", "0.123", "1.00", "17.2", "100", "1,400", "1,234,567"]);
+        assert_eq!(
+            written,
+            ["0", "1.23e-3", "0.123", "1.00", "17.2", "100", "1,400", "1,234,567"]
+        );
     }
 
     #[test]
     fn nearly_all_is_not_all() {
-        assert_eq!([0.0, 0.5, 0.999_999, 1.0].map(percent), ["0 %", "50.00 %", "99.99 %", "100 %"]);
+        assert_eq!(
+            [0.0, 0.5, 0.999_999, 1.0].map(percent),
+            ["0 %", "50.00 %", "99.99 %", "100 %"]
+        );
     }
 
     #[test]
     fn an_open_interval_shows_its_open_end() {
-        let open = Estimate { value: Some(23.0), ci95: [Some(13.0), None], n: 21 };
+        let open = Estimate {
+            value: Some(23.0),
+            ci95: [Some(13.0), None],
+            n: 21,
+        };
         assert_eq!(estimate(&open, figure), "23.0 [13.0, –]");
         assert_eq!(estimate(&Estimate::default(), figure), "–");
     }

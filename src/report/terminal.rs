@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use comfy_table::{CellAlignment, ContentLineStyle, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle, Table, TableStyle};
 
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use crate::metrics::Summary;
@@ -47,7 +47,10 @@ pub struct Speed {
 /// The report as text, at most 80 columns wide.
 #[must_use]
 pub fn terminal(input: &Input) -> String {
-    let mut page = Page { text: String::new(), colour: input.colour };
+    let mut page = Page {
+        text: String::new(),
+        colour: input.colour,
+    };
     page.title(&input.summary.scenario, input.question);
     outcome(&mut page, input);
     bandwidth(&mut page, input.summary);
@@ -64,7 +67,11 @@ fn outcome(page: &mut Page, input: &Input) {
         page.line("  none: every trial ran to its time limit");
         return;
     };
-    let [low, high] = summary.completion_ratio.estimate.ci95.map(|end| end.map_or(NOTHING.into(), percent));
+    let [low, high] = summary
+        .completion_ratio
+        .estimate
+        .ci95
+        .map(|end| end.map_or(NOTHING.into(), percent));
     let completed = format!(
         "{} of {} trials: {} [{low}, {high}]",
         count(summary.completed),
@@ -80,10 +87,17 @@ fn outcome(page: &mut Page, input: &Input) {
             seconds(steps * input.control_period_s),
             median.n
         ),
-        None => format!("{}: fewer than half of {} trials completed", estimate(median, figure), median.n),
+        None => format!(
+            "{}: fewer than half of {} trials completed",
+            estimate(median, figure),
+            median.n
+        ),
     };
     page.entry("after", &steps);
-    page.entry("robots used", &format!("{} on average", estimate(&summary.robots_used.estimate, figure)));
+    page.entry(
+        "robots used",
+        &format!("{} on average", estimate(&summary.robots_used.estimate, figure)),
+    );
 }
 
 fn bandwidth(page: &mut Page, summary: &Summary) {
@@ -91,22 +105,46 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
     page.heading("Bandwidth of a robot: bytes a control step, headers included");
     let mut table = Table::new();
     table.load_style(RULED).set_header(HEADER);
+    table
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(WIDTH as u16);
     for (name, topic) in &bandwidth.by_topic.0 {
-        let TopicBandwidth { directions, lost_bytes_per_step, header_share } = topic;
-        table.add_row(row(name, directions, &maybe(lost_bytes_per_step.median), &share(header_share)));
+        let TopicBandwidth {
+            directions,
+            lost_bytes_per_step,
+            header_share,
+        } = topic;
+        table.add_row(row(
+            name,
+            directions,
+            &cell(lost_bytes_per_step.median),
+            &share(header_share),
+        ));
     }
     table.add_row(row("all topics", &bandwidth.total, "", ""));
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((2, 0));
-        column.set_cell_alignment(if index == 0 { CellAlignment::Left } else { CellAlignment::Right });
+        column.set_cell_alignment(if index == 0 {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        });
     }
     page.line(&table.trim_fmt());
     page.line("");
     let mean = |spread: &Spread| estimate(&spread.mean, figure);
-    let Directions { tx_bytes_per_step: sent, rx_bytes_per_step: received, .. } = &bandwidth.total;
+    let Directions {
+        tx_bytes_per_step: sent,
+        rx_bytes_per_step: received,
+        ..
+    } = &bandwidth.total;
     page.entry("mean", &format!("sent {}, received {}", mean(sent), mean(received)));
     let load = &summary.load_imbalance;
-    let load = format!("sent {}, received {}", estimate(&load.tx, figure), estimate(&load.rx, figure));
+    let load = format!(
+        "sent {}, received {}",
+        estimate(&load.tx, figure),
+        estimate(&load.rx, figure)
+    );
     page.entry("Gini of load", &format!("{load}; 0 where all carry the same"));
 }
 
@@ -115,33 +153,78 @@ const RULED: TableStyle = TableStyle::new()
     .header_lines(ContentLineStyle::none())
     .header_separator(LineStyle::none().fill('─'))
     .content_lines(ContentLineStyle::none());
-const HEADER: [&str; 9] =
-    ["", "sent\nleast", "\nmedian", "\nmost", "received\nleast", "\nmedian", "\nmost", "lost\nmedian", "headers\nin sent"];
+const HEADER: [&str; 9] = [
+    "",
+    "sent\nleast",
+    "\nmedian",
+    "\nmost",
+    "received\nleast",
+    "\nmedian",
+    "\nmost",
+    "lost\nmedian",
+    "headers\nin sent",
+];
 
 fn row(name: &str, directions: &Directions, lost: &str, header: &str) -> [String; 9] {
-    let [a, b, c] = spread(&directions.tx_bytes_per_step);
-    let [d, e, f] = spread(&directions.rx_bytes_per_step);
-    [name.to_owned(), a, b, c, d, e, f, lost.to_owned(), header.to_owned()]
+    let [sent_least, sent, sent_most] = spread(&directions.tx_bytes_per_step);
+    let [least, received, most] = spread(&directions.rx_bytes_per_step);
+    let (lost, header) = (lost.to_owned(), header.to_owned());
+    [
+        name.to_owned(),
+        sent_least,
+        sent,
+        sent_most,
+        least,
+        received,
+        most,
+        lost,
+        header,
+    ]
 }
 
 fn spread(spread: &Spread) -> [String; 3] {
-    [spread.min, spread.median, spread.max].map(maybe)
+    [spread.min, spread.median, spread.max].map(cell)
+}
+
+/// A figure that may be missing, short enough for a column.
+fn cell(value: Option<f64>) -> String {
+    if value.is_some_and(|value| value > 0.0 && value < 0.01) {
+        "<0.01".to_owned()
+    } else {
+        maybe(value)
+    }
 }
 
 fn share(share: &Quantity<Option<f64>>) -> String {
-    share.value.map_or_else(|| NOTHING.to_owned(), |share| format!("{:.0} %", share * 100.0))
+    share
+        .value
+        .map_or_else(|| NOTHING.to_owned(), |share| format!("{:.0} %", share * 100.0))
 }
 
 fn radio(page: &mut Page, summary: &Summary) {
     page.heading("Radio");
     let fates = &summary.frames.total;
-    page.entry("delivered", &format!("{} of the copies offered", estimate(&summary.delivery_ratio.estimate, percent)));
+    page.entry(
+        "delivered",
+        &format!(
+            "{} of the copies offered",
+            estimate(&summary.delivery_ratio.estimate, percent)
+        ),
+    );
     let latency = &summary.latency_s;
     let [median, p95, p99] =
         [latency.p50, latency.p95, latency.p99].map(|quantile| quantile.map_or(NOTHING.into(), seconds));
-    page.entry("latency", &format!("median {median}, 95 % within {p95}, 99 % within {p99}"));
+    page.entry(
+        "latency",
+        &format!("median {median}, 95 % within {p95}, 99 % within {p99}"),
+    );
     let lost: u64 = fates.lost.0.iter().map(|(_, frames)| frames).sum();
-    let causes: Vec<_> = fates.lost.0.iter().map(|(cause, frames)| format!("{cause} {}", count(*frames))).collect();
+    let causes: Vec<_> = fates
+        .lost
+        .0
+        .iter()
+        .map(|(cause, frames)| format!("{cause} {}", count(*frames)))
+        .collect();
     let balanced = fates.offered == fates.delivered + lost + fates.in_flight;
     let balance = format!(
         "{} copies {} {} delivered + {} lost ({}) + {} in flight",
@@ -162,7 +245,11 @@ fn connectivity(page: &mut Page, summary: &Summary) {
         page.line("  not sampled");
         return;
     }
-    let least = format!("{} median of trials, {} at worst", estimate(&lambda2.estimate, figure), maybe(lambda2.min));
+    let least = format!(
+        "{} median of trials, {} at worst",
+        estimate(&lambda2.estimate, figure),
+        maybe(lambda2.min)
+    );
     page.entry("least λ₂", &least);
     let connected = estimate(&summary.connected_share.estimate, percent);
     page.entry("in one piece", &format!("{connected} of the time"));
@@ -170,7 +257,11 @@ fn connectivity(page: &mut Page, summary: &Summary) {
 
 fn run(page: &mut Page, input: &Input) {
     page.heading("Run");
-    let Speed { simulated_s, delivered, wall_s } = input.speed;
+    let Speed {
+        simulated_s,
+        delivered,
+        wall_s,
+    } = input.speed;
     let trials = input.summary.trials;
     let simulated = format!(
         "{} in {} trial{}, {} control steps",
@@ -231,7 +322,11 @@ impl Page {
     }
 
     fn bold(&self, words: &str) -> String {
-        if self.colour { format!("\u{1b}[1m{words}\u{1b}[0m") } else { words.to_owned() }
+        if self.colour {
+            format!("\u{1b}[1m{words}\u{1b}[0m")
+        } else {
+            words.to_owned()
+        }
     }
 }
 

@@ -44,16 +44,38 @@ pub const AXIS: &str = "#4d4d4d";
 /// Text.
 pub const TEXT: &str = "#1a1a1a";
 /// Robots within range of each other.
-pub const LINK: Stroke = Stroke { colour: "#3fae49", width: 0.9, opacity: 0.6 };
+pub const LINK: Stroke = Stroke {
+    colour: "#3fae49",
+    width: 0.9,
+    opacity: 0.6,
+};
 /// A place that a robot has to hold.
-pub const TARGET: Marker = Marker { shape: Shape::Target, colour: "#c00000", size: 11.0 };
+pub const TARGET: Marker = Marker {
+    shape: Shape::Target,
+    colour: "#c00000",
+    size: 11.0,
+};
+
+/// One of `links` links: the more there are, the fainter, so that what lies under a dense swarm's stays in sight.
+#[must_use]
+pub fn link(links: usize) -> Stroke {
+    let opacity = (LINK.opacity * (200.0 / links.max(1) as f64).sqrt()).clamp(0.2, LINK.opacity);
+    Stroke {
+        opacity: (opacity * 100.0).round() / 100.0,
+        ..LINK
+    }
+}
 
 const CHAINS: [&str; 6] = ["#cc79a7", "#e69f00", "#56b4e9", "#7b3294", "#8c510a", "#35978f"];
 
 /// The chains of a target.
 #[must_use]
 pub fn chain(target: usize) -> Stroke {
-    Stroke { colour: CHAINS[target % CHAINS.len()], width: 3.2, opacity: 0.95 }
+    Stroke {
+        colour: CHAINS[target % CHAINS.len()],
+        width: 3.2,
+        opacity: 0.95,
+    }
 }
 
 /// Robots of role number `index`, called `name`: the backbone's roles have looks of their own, others take turns.
