@@ -40,7 +40,10 @@ pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut 
     Ok(well)
 }
 
-/// Every override, or what is wrong with each that is none.
+/// Every override.
+///
+/// # Errors
+/// What is wrong with each that is none.
 pub fn all(overrides: &[String]) -> Result<Vec<Override>, Report> {
     let mut parsed = Vec::new();
     let mut diagnostics: Vec<Diagnostic> = Vec::new();

@@ -80,10 +80,10 @@ pub fn run(command: Command) -> Result<(), Failure> {
             files,
             overrides,
             resolved,
-        } => match check::check(&files, &overrides, resolved, &mut out)? {
-            true => Ok(()),
-            false => Err(Failure::Shown),
-        },
+        } => {
+            let well = check::check(&files, &overrides, resolved, &mut out)?;
+            if well { Ok(()) } else { Err(Failure::Shown) }
+        }
         Command::Schema => Ok(schema::schema(&mut out)?),
     }
 }

@@ -105,7 +105,8 @@ fn run_trials<T: Send, E: Send>(
     thread::scope(|scope| {
         for _ in 0..jobs.get().min(trials.len()) {
             let sender = sender.clone();
-            scope.spawn(|| work(trials, &next, stop, &run, sender));
+            let (next, run) = (&next, &run);
+            scope.spawn(move || work(trials, next, stop, run, &sender));
         }
         drop(sender);
         let mut left = trials.len();
@@ -136,7 +137,7 @@ fn work<T, E>(
     next: &AtomicUsize,
     stop: &CancellationToken,
     run: &(impl Fn(u32) -> Result<T, E> + Sync),
-    results: mpsc::Sender<Result<T, E>>,
+    results: &mpsc::Sender<Result<T, E>>,
 ) {
     while !stop.is_cancelled() {
         let Some(&trial) = trials.get(next.fetch_add(1, Ordering::Relaxed)) else {

@@ -27,18 +27,19 @@ pub struct Column<R> {
 
 type Get<R, T> = Box<dyn Fn(&R) -> T>;
 
-/// How a column's value is read off a row, by the type that the file gives it.
+/// How a column's value is read off a row. Ids and counts are signed in the file, because R and others know no unsigned
+/// numbers; none of them reaches so far.
 enum Value<R> {
-    I32(Get<R, i32>),
-    OptionalI32(Get<R, Option<i32>>),
-    I64(Get<R, i64>),
-    OptionalI64(Get<R, Option<i64>>),
-    U64(Get<R, u64>),
+    Id(Get<R, u32>),
+    OptionalId(Get<R, Option<u32>>),
+    Count(Get<R, u64>),
+    OptionalCount(Get<R, Option<u64>>),
+    Key(Get<R, u64>),
     F32(Get<R, f32>),
     F64(Get<R, f64>),
     OptionalF64(Get<R, Option<f64>>),
     Text(Get<R, Cow<'static, str>>),
-    ListI32(Get<R, Vec<i32>>),
+    ListOfIds(Get<R, Vec<u32>>),
 }
 
 /// Declares a constructor of [`Column`] for each type of value.
@@ -54,16 +55,16 @@ macro_rules! constructors {
 }
 
 constructors! {
-    /// Small numbers: trials, robots, targets.
-    i32, I32, i32;
-    /// Small numbers, null where there is none.
-    optional_i32, OptionalI32, Option<i32>;
+    /// Numbers of trials, robots and targets, and other small counts.
+    id, Id, u32;
+    /// Such numbers, null where there is none.
+    optional_id, OptionalId, Option<u32>;
     /// Counts.
-    i64, I64, i64;
+    count, Count, u64;
     /// Counts, null where there is none.
-    optional_i64, OptionalI64, Option<i64>;
+    optional_count, OptionalCount, Option<u64>;
     /// Numbers that use all of 64 bits.
-    u64, U64, u64;
+    key, Key, u64;
     /// Single-precision numbers.
     f32, F32, f32;
     /// Double-precision numbers.
@@ -73,7 +74,7 @@ constructors! {
     /// Text.
     text, Text, Cow<'static, str>;
     /// Lists of small numbers.
-    list_i32, ListI32, Vec<i32>;
+    list_of_ids, ListOfIds, Vec<u32>;
 }
 
 /// A Parquet file being written.
@@ -153,11 +154,11 @@ impl<R> Column<R> {
         let unsigned = Some(LogicalType::integer(64, false));
         let name = self.name.as_ref();
         match self.value {
-            Value::I32(_) => leaf(name, Physical::INT32, Repetition::REQUIRED, None),
-            Value::OptionalI32(_) => leaf(name, Physical::INT32, Repetition::OPTIONAL, None),
-            Value::I64(_) => leaf(name, Physical::INT64, Repetition::REQUIRED, None),
-            Value::OptionalI64(_) => leaf(name, Physical::INT64, Repetition::OPTIONAL, None),
-            Value::U64(_) => leaf(name, Physical::INT64, Repetition::REQUIRED, unsigned),
+            Value::Id(_) => leaf(name, Physical::INT32, Repetition::REQUIRED, None),
+            Value::OptionalId(_) => leaf(name, Physical::INT32, Repetition::OPTIONAL, None),
+            Value::Count(_) => leaf(name, Physical::INT64, Repetition::REQUIRED, None),
+            Value::OptionalCount(_) => leaf(name, Physical::INT64, Repetition::OPTIONAL, None),
+            Value::Key(_) => leaf(name, Physical::INT64, Repetition::REQUIRED, unsigned),
             Value::F32(_) => leaf(name, Physical::FLOAT, Repetition::REQUIRED, None),
             Value::F64(_) => leaf(name, Physical::DOUBLE, Repetition::REQUIRED, None),
             Value::OptionalF64(_) => leaf(name, Physical::DOUBLE, Repetition::OPTIONAL, None),
@@ -167,7 +168,7 @@ impl<R> Column<R> {
                 Repetition::REQUIRED,
                 Some(LogicalType::String),
             ),
-            Value::ListI32(_) => {
+            Value::ListOfIds(_) => {
                 let element = leaf("element", Physical::INT32, Repetition::REQUIRED, None)?;
                 let list = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
                 let list = list.with_fields(vec![element]).build()?;
@@ -183,18 +184,27 @@ impl<R> Column<R> {
     /// Writes the column's values of `rows` as the group's next column.
     fn write(&self, rows: &[R], group: &mut SerializedRowGroupWriter<'_, File>) -> Result<(), ParquetError> {
         match &self.value {
-            Value::I32(get) => required::<Int32Type, _>(group, rows.iter().map(get)),
-            Value::OptionalI32(get) => optional::<Int32Type, _>(group, rows.iter().map(get)),
-            Value::I64(get) => required::<Int64Type, _>(group, rows.iter().map(get)),
-            Value::OptionalI64(get) => optional::<Int64Type, _>(group, rows.iter().map(get)),
-            Value::U64(get) => required::<Int64Type, _>(group, rows.iter().map(|row| get(row).cast_signed())),
+            Value::Id(get) => required::<Int32Type, _>(group, rows.iter().map(|row| get(row).cast_signed())),
+            Value::OptionalId(get) => {
+                optional::<Int32Type, _>(group, rows.iter().map(|row| get(row).map(u32::cast_signed)))
+            }
+            Value::OptionalCount(get) => {
+                optional::<Int64Type, _>(group, rows.iter().map(|row| get(row).map(u64::cast_signed)))
+            }
+            Value::Count(get) | Value::Key(get) => {
+                required::<Int64Type, _>(group, rows.iter().map(|row| get(row).cast_signed()))
+            }
             Value::F32(get) => required::<FloatType, _>(group, rows.iter().map(get)),
             Value::F64(get) => required::<DoubleType, _>(group, rows.iter().map(get)),
             Value::OptionalF64(get) => optional::<DoubleType, _>(group, rows.iter().map(get)),
             Value::Text(get) => required::<ByteArrayType, _>(group, rows.iter().map(|row| text(get(row)))),
-            Value::ListI32(get) => list::<Int32Type, _>(group, rows.iter().map(get)),
+            Value::ListOfIds(get) => list::<Int32Type, _>(group, rows.iter().map(|row| signed(get(row)))),
         }
     }
+}
+
+fn signed(ids: Vec<u32>) -> Vec<i32> {
+    ids.into_iter().map(u32::cast_signed).collect()
 }
 
 fn text(text: Cow<'static, str>) -> ByteArray {

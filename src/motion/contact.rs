@@ -14,7 +14,7 @@ use crate::geometry::{Vec2, clamp_length};
 pub const OVERLAP_TOLERANCE: f64 = 0.01;
 
 /// Rounds of pushing apart before robots that still overlap count as jammed.
-const ROUNDS: u32 = 12;
+const ROUNDS: u32 = 8;
 /// Times that the jammed are drawn half-way back before they are held.
 const ATTEMPTS: u32 = 8;
 /// Rounds end when no overlap is deeper than this share of the tolerance.

@@ -179,7 +179,7 @@ mod tests {
             drive.turn(&chassis());
         }
         assert!(drive.rests());
-        assert_eq!(drive.heading(0.0), heading);
+        assert!((drive.heading(0.0) - heading).abs() < 1e-15);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::geometry::Vec2;
 const CELLS_PER_POINT: usize = 4;
 /// More than the rounding of a coordinate, in metres: widens searches, never what they find.
 const ROUNDING: f64 = 1e-9;
-/// Points tested at a time.
+/// Near points noted before they are visited.
 const BATCH: usize = 64;
 
 /// Points sorted by cell, row by row, so that the cells which a search needs from one row lie side by side in memory.
@@ -60,17 +60,36 @@ impl Grid {
     /// Calls `visit` once for each point within `range` of `centre`, the rim included, `elapsed` seconds after the
     /// grid was built: with its number and where it is then, relative to `centre`. The order depends on nothing but
     /// what the grid was built from.
+    ///
+    /// Whether a point is near is as good as random, and a wrong guess of the processor costs more than the test: so near
+    /// points are first noted without a branch, over all rows, then visited.
     #[inline]
     pub(super) fn for_each_within(&self, centre: Vec2, elapsed: f64, range: f64, mut visit: impl FnMut(u32, Vec2)) {
         let reach = range + self.fastest * elapsed + ROUNDING;
         let limit = range * range;
         let (left, right) = (self.column(centre.x - reach), self.column(centre.x + reach));
+        let mut near = [0_u32; BATCH];
+        let mut found = 0;
         for row in self.row(centre.y - reach)..=self.row(centre.y + reach) {
             let first = self.starts[row * self.columns + left] as usize;
             let end = self.starts[row * self.columns + right + 1] as usize;
-            for batch in self.points[first..end].chunks(BATCH) {
-                visit_near(batch, centre, elapsed, limit, &mut visit);
+            for (index, point) in (first..).zip(&self.points[first..end]) {
+                near[found] = index as u32;
+                found += usize::from(point.offset(centre, elapsed).norm_squared() <= limit);
+                if found == BATCH {
+                    self.visit_all(&near, centre, elapsed, &mut visit);
+                    found = 0;
+                }
             }
+        }
+        self.visit_all(&near[..found], centre, elapsed, &mut visit);
+    }
+
+    #[inline]
+    fn visit_all(&self, indices: &[u32], centre: Vec2, elapsed: f64, visit: &mut impl FnMut(u32, Vec2)) {
+        for &index in indices {
+            let point = &self.points[index as usize];
+            visit(point.id, point.offset(centre, elapsed));
         }
     }
 
@@ -137,27 +156,12 @@ impl Grid {
     }
 }
 
-/// Visits those of `batch` whose squared distance is at most `limit`.
-///
-/// Whether a point is near is as good as random, and a wrong guess of the processor costs more than the test: so near
-/// points are first noted without a branch, then visited.
-#[inline]
-fn visit_near(batch: &[Point], centre: Vec2, elapsed: f64, limit: f64, visit: &mut impl FnMut(u32, Vec2)) {
-    let mut near = [0_u8; BATCH];
-    let mut found = 0;
-    for (index, point) in batch.iter().enumerate() {
-        near[found % BATCH] = index as u8;
-        found += usize::from(offset(point, centre, elapsed).norm_squared() <= limit);
+impl Point {
+    /// Where it is `elapsed` seconds after the grid was built, relative to `centre`.
+    #[inline]
+    fn offset(&self, centre: Vec2, elapsed: f64) -> Vec2 {
+        self.position + self.velocity * elapsed - centre
     }
-    for &index in &near[..found] {
-        let point = &batch[usize::from(index)];
-        visit(point.id, offset(point, centre, elapsed));
-    }
-}
-
-#[inline]
-fn offset(point: &Point, centre: Vec2, elapsed: f64) -> Vec2 {
-    point.position + point.velocity * elapsed - centre
 }
 
 #[cfg(test)]

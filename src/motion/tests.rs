@@ -131,7 +131,7 @@ fn a_robot_pushes_a_standing_one_before_it() {
     let apart = world.positions()[1] - world.positions()[0];
     assert!(world.positions()[1].x > 1.0, "{}", world.positions()[1]);
     assert!((apart - Vec2::new(0.14, 0.0)).norm() < 0.14 * OVERLAP_TOLERANCE);
-    assert_eq!(world.pose(ActorId(1), world.now()).heading, 1.0);
+    assert!((world.pose(ActorId(1), world.now()).heading - 1.0).abs() < 1e-15);
 }
 
 #[test]
@@ -163,34 +163,21 @@ fn proximity_reports_gaps_between_edges_of_robots_walls_and_obstacles() {
 }
 
 #[test]
-fn a_world_in_which_nobody_moves_only_lets_time_pass() {
-    let mut world = World::new(
-        &MotionConfig::default(),
-        &square(10.0),
-        vec![pose(1.0, 1.0, 0.5); 1],
-        2.0,
-    );
+fn a_world_at_rest_only_lets_time_pass_and_is_never_rebuilt() {
+    let mut world = World::new(&MotionConfig::default(), &square(10.0), vec![pose(1.0, 1.0, 0.5)], 2.0);
     world.command(ActorId(0), Vec2::zeros());
-    for _ in 0..10 {
-        world.advance();
-    }
+    (0..10).for_each(|_| world.advance());
     assert_eq!(world.now(), SimTime::from_secs(1.0));
     assert_eq!(world.pose(ActorId(0), world.now()), pose(1.0, 1.0, 0.5));
     assert_eq!(world.rebuilds(), 1);
-}
 
-#[test]
-fn a_world_that_has_come_to_rest_is_not_rebuilt_again() {
-    let mut world = World::new(&MotionConfig::default(), &square(10.0), vec![pose(0.0, 0.0, 0.0)], 2.0);
     world.command(ActorId(0), Vec2::new(0.03, 0.0));
     world.advance();
     world.command(ActorId(0), Vec2::zeros());
-    for _ in 0..40 {
-        world.advance();
-    }
+    (0..40).for_each(|_| world.advance());
     let rebuilds = world.rebuilds();
     world.advance();
-    assert_eq!(world.rebuilds(), rebuilds);
+    assert!(rebuilds > 1 && world.rebuilds() == rebuilds);
 }
 
 #[test]
@@ -249,7 +236,7 @@ fn a_crowd_that_all_heads_for_one_place_packs_without_overlap_and_without_freezi
         assert!(deepest_overlap(&world, &square(4.0), 0.07) <= 0.07 * OVERLAP_TOLERANCE + 1e-9);
     }
     // Sixty discs as dense as random packings of equal discs are (0.82) fill a disc of 0.6 m.
-    let furthest = world.positions().iter().map(|place| place.norm()).fold(0.0, f64::max);
+    let furthest = world.positions().iter().map(Vec2::norm).fold(0.0, f64::max);
     assert!(furthest < 0.75, "{furthest}");
 }
 

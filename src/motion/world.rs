@@ -8,10 +8,6 @@ use super::grid::Grid;
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::{Pose, Vec2};
 
-/// Cells of the radio's grid for each neighbour range. Finer cells cut the corners of the disc closer, coarser ones
-/// mean fewer rows to look up; two was fastest at 12 and at 60 neighbours.
-const CELLS_PER_RANGE: f64 = 2.0;
-
 /// The least distance that proximity reports, in metres: what touches still has a direction.
 const TOUCH: f64 = 1e-6;
 
@@ -73,7 +69,7 @@ impl World {
             stirring: false,
             movers: Vec::new(),
             contacts: Contacts::new(robots, body_radius, tick.as_secs(), max_speed),
-            neighbours: Grid::new(neighbour_range.max(body_reach) / CELLS_PER_RANGE),
+            neighbours: Grid::new(neighbour_range.max(body_reach)),
             bodies: Grid::new(body_reach),
             #[cfg(test)]
             rebuilds: 0,

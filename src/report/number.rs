@@ -21,7 +21,7 @@ pub fn count(value: u64) -> String {
 /// A figure that is not negative, with three digits that count, or all of those before the point.
 pub fn figure(value: f64) -> String {
     match value {
-        _ if value == 0.0 => "0".to_owned(),
+        _ if value <= 0.0 => "0".to_owned(),
         _ if value >= 999.5 => count(value.round() as u64),
         _ if value >= 99.95 => format!("{value:.0}"),
         _ if value >= 9.995 => format!("{value:.1}"),
@@ -38,17 +38,17 @@ pub fn maybe(value: Option<f64>) -> String {
 
 /// A share in percent; one that is nearly all is never rounded to all.
 pub fn percent(share: f64) -> String {
-    let percent = share * 100.0;
-    if percent == 0.0 || percent == 100.0 {
-        return format!("{percent:.0} %");
+    match share {
+        _ if share <= 0.0 => "0 %".to_owned(),
+        _ if share >= 1.0 => "100 %".to_owned(),
+        _ => format!("{:.2} %", (share * 100.0).clamp(0.01, 99.99)),
     }
-    format!("{:.2} %", percent.clamp(0.01, 99.99))
 }
 
 /// A duration in the unit that suits it.
 pub fn seconds(value: f64) -> String {
     match value {
-        _ if value == 0.0 => "0 s".to_owned(),
+        _ if value <= 0.0 => "0 s".to_owned(),
         _ if value < 1e-3 => format!("{} µs", figure(value * 1e6)),
         _ if value < 1.0 => format!("{} ms", figure(value * 1e3)),
         _ => format!("{} s", figure(value)),

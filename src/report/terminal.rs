@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use comfy_table::{CellAlignment, ContentLineStyle, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle, Table, TableStyle};
 
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use crate::metrics::Summary;
@@ -105,6 +105,9 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
     page.heading("Bandwidth of a robot: bytes a control step, headers included");
     let mut table = Table::new();
     table.load_style(RULED).set_header(HEADER);
+    table
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(WIDTH as u16);
     for (name, topic) in &bandwidth.by_topic.0 {
         let TopicBandwidth {
             directions,
@@ -114,7 +117,7 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
         table.add_row(row(
             name,
             directions,
-            &maybe(lost_bytes_per_step.median),
+            &cell(lost_bytes_per_step.median),
             &share(header_share),
         ));
     }
@@ -163,13 +166,33 @@ const HEADER: [&str; 9] = [
 ];
 
 fn row(name: &str, directions: &Directions, lost: &str, header: &str) -> [String; 9] {
-    let [a, b, c] = spread(&directions.tx_bytes_per_step);
-    let [d, e, f] = spread(&directions.rx_bytes_per_step);
-    [name.to_owned(), a, b, c, d, e, f, lost.to_owned(), header.to_owned()]
+    let [sent_least, sent, sent_most] = spread(&directions.tx_bytes_per_step);
+    let [least, received, most] = spread(&directions.rx_bytes_per_step);
+    let (lost, header) = (lost.to_owned(), header.to_owned());
+    [
+        name.to_owned(),
+        sent_least,
+        sent,
+        sent_most,
+        least,
+        received,
+        most,
+        lost,
+        header,
+    ]
 }
 
 fn spread(spread: &Spread) -> [String; 3] {
-    [spread.min, spread.median, spread.max].map(maybe)
+    [spread.min, spread.median, spread.max].map(cell)
+}
+
+/// A figure that may be missing, short enough for a column.
+fn cell(value: Option<f64>) -> String {
+    if value.is_some_and(|value| value > 0.0 && value < 0.01) {
+        "<0.01".to_owned()
+    } else {
+        maybe(value)
+    }
 }
 
 fn share(share: &Quantity<Option<f64>>) -> String {

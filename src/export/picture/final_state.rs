@@ -17,7 +17,8 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
     let mut canvas = Canvas::new(size, &scene.name, &subtitle(record));
     let robots = &record.robots;
     obstacles(&mut canvas, &scene.arena.obstacles);
-    canvas.lines(links(robots, scene.range), LINK);
+    let links: Vec<_> = links(robots, scene.range).collect();
+    canvas.lines(links.iter().copied(), style::link(links.len()));
     let targets = worked_for(robots);
     for &target in &targets {
         canvas.lines(chain(robots, target), style::chain(target.into()));

@@ -56,6 +56,16 @@ pub const TARGET: Marker = Marker {
     size: 11.0,
 };
 
+/// One of `links` links: the more there are, the fainter, so that what lies under a dense swarm's stays in sight.
+#[must_use]
+pub fn link(links: usize) -> Stroke {
+    let opacity = (LINK.opacity * (200.0 / links.max(1) as f64).sqrt()).clamp(0.2, LINK.opacity);
+    Stroke {
+        opacity: (opacity * 100.0).round() / 100.0,
+        ..LINK
+    }
+}
+
 const CHAINS: [&str; 6] = ["#cc79a7", "#e69f00", "#56b4e9", "#7b3294", "#8c510a", "#35978f"];
 
 /// The chains of a target.

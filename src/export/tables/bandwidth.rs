@@ -44,13 +44,13 @@ type Col = Column<Row>;
 
 pub fn columns() -> Vec<Column<Row>> {
     vec![
-        Col::i32("trial", |row| row.trial as i32),
-        Col::i32("robot", |row| row.robot as i32),
+        Col::id("trial", |row| row.trial),
+        Col::id("robot", |row| row.robot),
         Col::text("role", |row| row.role.into()),
         Col::text("topic", |row| row.topic.into()),
         Col::text("direction", |row| row.direction.clone()),
-        Col::i64("frames", |row| row.volume.frames as i64),
-        Col::i64("payload_bytes", |row| row.volume.payload_bytes as i64),
-        Col::i64("header_bytes", |row| row.volume.header_bytes as i64),
+        Col::count("frames", |row| row.volume.frames),
+        Col::count("payload_bytes", |row| row.volume.payload_bytes),
+        Col::count("header_bytes", |row| row.volume.header_bytes),
     ]
 }

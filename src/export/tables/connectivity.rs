@@ -23,24 +23,24 @@ type Col = Column<Row>;
 /// One column a role and one a target: `robots_<role>`, `links_<target>`.
 pub fn columns(names: &Names, targets: usize) -> Vec<Column<Row>> {
     let mut columns = vec![
-        Col::i32("trial", |row| row.trial as i32),
+        Col::id("trial", |row| row.trial),
         Col::f64("time_s", |row| row.sample.at.as_secs()),
         Col::f64("lambda2", |row| row.sample.lambda2),
-        Col::i32("components", |row| row.sample.components as i32),
+        Col::id("components", |row| row.sample.components),
     ];
     columns.extend(
         names
             .roles
             .iter()
             .enumerate()
-            .map(|(index, role)| Col::optional_i32(format!("robots_{role}"), move |row| at(&row.sample.roles, index))),
+            .map(|(index, role)| Col::optional_id(format!("robots_{role}"), move |row| at(&row.sample.roles, index))),
     );
     columns.extend(
-        (0..targets).map(|index| Col::optional_i32(format!("links_{index}"), move |row| at(&row.sample.links, index))),
+        (0..targets).map(|index| Col::optional_id(format!("links_{index}"), move |row| at(&row.sample.links, index))),
     );
     columns
 }
 
-fn at(counts: &[u32], index: usize) -> Option<i32> {
-    counts.get(index).map(|&count| count as i32)
+fn at(counts: &[u32], index: usize) -> Option<u32> {
+    counts.get(index).copied()
 }

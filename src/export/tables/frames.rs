@@ -25,16 +25,17 @@ type Col = Column<Row>;
 
 pub fn columns() -> Vec<Column<Row>> {
     let mut columns = vec![
-        Col::i32("trial", |row| row.trial as i32),
+        Col::id("trial", |row| row.trial),
         Col::text("topic", |row| row.topic.into()),
-        Col::i64("offered", |row| row.fates.offered as i64),
-        Col::i64("delivered", |row| row.fates.delivered as i64),
+        Col::count("offered", |row| row.fates.offered),
+        Col::count("delivered", |row| row.fates.delivered),
     ];
-    columns.extend(LossCause::ALL.iter().enumerate().map(|(index, cause)| {
-        Col::i64(format!("lost_{}", cause.name()), move |row| {
-            row.fates.lost[index] as i64
-        })
-    }));
-    columns.push(Col::i64("in_flight", |row| row.fates.in_flight as i64));
+    columns.extend(
+        LossCause::ALL
+            .iter()
+            .enumerate()
+            .map(|(index, cause)| Col::count(format!("lost_{}", cause.name()), move |row| row.fates.lost[index])),
+    );
+    columns.push(Col::count("in_flight", |row| row.fates.in_flight));
     columns
 }

@@ -25,9 +25,9 @@ type Col = Column<Row>;
 
 pub fn columns() -> Vec<Column<Row>> {
     vec![
-        Col::i32("trial", |row| row.trial as i32),
-        Col::i64("low_ns", |row| row.low_ns as i64),
-        Col::i64("high_ns", |row| row.high_ns as i64),
-        Col::i64("count", |row| row.count as i64),
+        Col::id("trial", |row| row.trial),
+        Col::count("low_ns", |row| row.low_ns),
+        Col::count("high_ns", |row| row.high_ns),
+        Col::count("count", |row| row.count),
     ]
 }

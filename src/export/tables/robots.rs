@@ -7,13 +7,13 @@ use crate::metrics::{RobotState, TrialRecord};
 /// A robot at the end of a trial.
 pub struct Row {
     trial: u32,
-    robot: usize,
+    robot: u32,
     role: &'static str,
     state: RobotState,
 }
 
 pub fn rows(record: &TrialRecord, names: &Names) -> impl Iterator<Item = Row> {
-    record.robots.iter().enumerate().map(move |(robot, state)| Row {
+    (0..).zip(&record.robots).map(move |(robot, state)| Row {
         trial: record.trial,
         robot,
         role: names.role(state.role.into()),
@@ -25,15 +25,15 @@ type Col = Column<Row>;
 
 pub fn columns() -> Vec<Column<Row>> {
     vec![
-        Col::i32("trial", |row| row.trial as i32),
-        Col::i32("robot", |row| row.robot as i32),
+        Col::id("trial", |row| row.trial),
+        Col::id("robot", |row| row.robot),
         Col::f64("x_m", |row| row.state.pose.position.x),
         Col::f64("y_m", |row| row.state.pose.position.y),
         Col::f64("heading_rad", |row| row.state.pose.heading),
         Col::text("role", |row| row.role.into()),
-        Col::optional_i32("target", |row| row.state.target.map(i32::from)),
-        Col::list_i32("parents", |row| {
-            row.state.parents.iter().map(|parent| parent.0 as i32).collect()
+        Col::optional_id("target", |row| row.state.target.map(u32::from)),
+        Col::list_of_ids("parents", |row| {
+            row.state.parents.iter().map(|parent| parent.0).collect()
         }),
     ]
 }

@@ -8,13 +8,13 @@ use crate::metrics::TrialRecord;
 pub struct Row {
     trial: u32,
     at: SimTime,
-    robot: usize,
+    robot: u32,
     place: [f32; 2],
 }
 
 pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
     record.trajectories.iter().flat_map(move |(at, places)| {
-        let robots = places.iter().enumerate();
+        let robots = (0..).zip(places);
         robots.map(move |(robot, &place)| Row {
             trial: record.trial,
             at: *at,
@@ -28,9 +28,9 @@ type Col = Column<Row>;
 
 pub fn columns() -> Vec<Column<Row>> {
     vec![
-        Col::i32("trial", |row| row.trial as i32),
+        Col::id("trial", |row| row.trial),
         Col::f64("time_s", |row| row.at.as_secs()),
-        Col::i32("robot", |row| row.robot as i32),
+        Col::id("robot", |row| row.robot),
         Col::f32("x_m", |row| row.place[0]),
         Col::f32("y_m", |row| row.place[1]),
     ]

@@ -12,8 +12,8 @@ pub struct Row {
     steps: u64,
     control_period_s: f64,
     simulated_s: f64,
-    robots: usize,
-    robots_used: Option<usize>,
+    robots: u32,
+    robots_used: Option<u32>,
     events: u64,
     lambda2_min: Option<f64>,
     connected_share: Option<f64>,
@@ -32,8 +32,8 @@ pub fn row(record: &TrialRecord) -> Row {
         steps: record.steps,
         control_period_s: record.control_period.as_secs(),
         simulated_s: record.simulated.as_secs(),
-        robots: record.robots.len(),
-        robots_used: record.robots_used(),
+        robots: record.robots.len() as u32,
+        robots_used: record.robots_used().map(|robots| robots as u32),
         events: record.events,
         lambda2_min: record.lambda2_min(),
         connected_share: record.connected_share(),
@@ -49,31 +49,27 @@ type Col = Column<Row>;
 
 pub fn columns() -> Vec<Column<Row>> {
     vec![
-        Col::i32("trial", |row| row.trial as i32),
-        Col::u64("seed", |row| row.seed),
+        Col::id("trial", |row| row.trial),
+        Col::key("seed", |row| row.seed),
         Col::text("outcome", |row| outcome(row.outcome).into()),
-        Col::optional_i64("steps_to_completion", |row| match row.outcome {
-            Outcome::Completed { step } => Some(step as i64),
+        Col::optional_count("steps_to_completion", |row| match row.outcome {
+            Outcome::Completed { step } => Some(step),
             Outcome::Censored | Outcome::NoMission => None,
         }),
-        Col::i64("steps", |row| row.steps as i64),
+        Col::count("steps", |row| row.steps),
         Col::f64("control_period_s", |row| row.control_period_s),
         Col::f64("simulated_s", |row| row.simulated_s),
-        Col::i32("robots", |row| row.robots as i32),
-        Col::optional_i32("robots_used", |row| row.robots_used.map(|robots| robots as i32)),
-        Col::i64("events", |row| row.events as i64),
+        Col::id("robots", |row| row.robots),
+        Col::optional_id("robots_used", |row| row.robots_used),
+        Col::count("events", |row| row.events),
         Col::optional_f64("lambda2_min", |row| row.lambda2_min),
         Col::optional_f64("connected_share", |row| row.connected_share),
-        Col::i64("suspicions", |row| row.suspicions as i64),
-        Col::optional_i64("latency_min_ns", |row| row.latency_min.map(nanos)),
-        Col::optional_i64("latency_max_ns", |row| row.latency_max.map(nanos)),
-        Col::optional_i64("latency_sum_ns", |row| i64::try_from(row.latency_sum_ns).ok()),
+        Col::count("suspicions", |row| row.suspicions),
+        Col::optional_count("latency_min_ns", |row| row.latency_min.map(Span::as_nanos)),
+        Col::optional_count("latency_max_ns", |row| row.latency_max.map(Span::as_nanos)),
+        Col::optional_count("latency_sum_ns", |row| u64::try_from(row.latency_sum_ns).ok()),
         Col::text("digest", |row| format!("{:032x}", row.digest).into()),
     ]
-}
-
-fn nanos(span: Span) -> i64 {
-    span.as_nanos() as i64
 }
 
 fn outcome(outcome: Outcome) -> &'static str {

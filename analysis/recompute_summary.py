@@ -1,0 +1,285 @@
+#!/usr/bin/env python3
+"""Recomputes summary.json of a results folder from its Parquet files alone, and fails on any disagreement.
+
+    python analysis/recompute_summary.py results/quickstart...
+
+Written from results/README.md, not from the simulator's code. Figures must agree bit for bit: sums are taken in the
+order of the rows. Ends of intervals come from SciPy's distributions here and must agree to nine digits.
+"""
+
+import json
+import math
+import pathlib
+import sys
+from statistics import NormalDist
+
+import polars as pl
+import xxhash
+from scipy.stats import binom, t as student
+
+Z = NormalDist().inv_cdf(0.975)
+INTERVAL_TOLERANCE = 1e-9
+
+
+def total(values):
+    """The sum in order. Python's own corrects rounding on the way, from version 3.12 on."""
+    result = 0.0
+    for value in values:
+        result += value
+    return result
+
+
+def estimate(value, low=None, high=None, n=0):
+    return {"value": value, "ci95": [low, high], "n": n}
+
+
+def mean(values):
+    values = [value for value in values if value is not None]
+    n = len(values)
+    if n == 0:
+        return estimate(None)
+    value = values[0] + total(v - values[0] for v in values) / n
+    if n == 1:
+        return estimate(value, n=1)
+    squares = total((v - value) ** 2 for v in values)
+    half = student.ppf(0.975, n - 1) * math.sqrt(squares / (n - 1) / n)
+    return estimate(value, value - half, value + half, n)
+
+
+def quantile(ordered, q):
+    if not ordered:
+        return None
+    rank = (len(ordered) - 1) * q
+    below, above = ordered[math.floor(rank)], ordered[math.ceil(rank)]
+    return below + (above - below) * (rank - math.floor(rank))
+
+
+def median(values):
+    ordered = sorted(value for value in values if value is not None)
+    n = len(ordered)
+    ranks = [k for k in range(1, n + 1) if binom.cdf(k - 1, n, 0.5) <= 0.025]
+    low, high = (ordered[ranks[-1] - 1], ordered[n - ranks[-1]]) if ranks else (None, None)
+    return estimate(quantile(ordered, 0.5), low, high, n)
+
+
+def wilson(successes, n):
+    if n == 0:
+        return estimate(None)
+    share, shrink = successes / n, 1 + Z * Z / n
+    centre = (share + Z * Z / (2 * n)) / shrink
+    half = Z / shrink * math.sqrt(share * (1 - share) / n + Z * Z / (4 * n * n))
+    low = 0.0 if successes == 0 else centre - half
+    high = 1.0 if successes == n else centre + half
+    return estimate(share, low, high, n)
+
+
+def kaplan_meier(times):
+    """The median of (time, happened) pairs, with the Brookmeyer-Crowley interval under the log(-log) transform."""
+    at_risk, survival, greenwood = float(len(times)), 1.0, 0.0
+    found = [None, None, None]
+    for time in sorted({time for time, _ in times}):
+        happened = sum(1 for t, done in times if t == time and done)
+        if happened:
+            survival *= 1 - happened / at_risk
+            if survival > 0:
+                greenwood += happened / (at_risk * (at_risk - happened))
+                width = Z * math.sqrt(greenwood) / -math.log(survival)
+                levels = [survival, survival ** math.exp(width), survival ** math.exp(-width)]
+            else:
+                levels = [0.0] * 3
+            found = [f if f is not None else (float(time) if s <= 0.5 else None) for f, s in zip(found, levels)]
+        at_risk -= sum(1 for t, _ in times if t == time)
+    return estimate(*found, n=len(times))
+
+
+def gini(values):
+    ordered, n = sorted(values), float(len(values))
+    whole = total(ordered)
+    ranked = total(float(rank) * value for rank, value in enumerate(ordered, 1))
+    return max(2.0 * ranked / (n * whole) - (n + 1.0) / n, 0.0) if whole > 0 else None
+
+
+class Folder:
+    """The tables of a results folder."""
+
+    def __init__(self, path):
+        self.path = path
+        self.trials = self.table("trials").sort("trial")
+        self.frames = self.table("frames")
+        self.bandwidth = self.table("bandwidth")
+        self.latency = self.table("latency")
+        self.connectivity = self.table("connectivity")
+        self.topics = self.frames["topic"].unique(maintain_order=True).to_list()
+        prefix = "robots_"
+        self.roles = [c.removeprefix(prefix) for c in self.connectivity.columns if c.startswith(prefix)]
+        self.causes = [c.removeprefix("lost_") for c in self.frames.columns if c.startswith("lost_")]
+
+    def table(self, name):
+        return pl.read_parquet(self.path / f"{name}.parquet")
+
+    def per_step(self, rows, headers=True):
+        """Bytes a control step of every robot, trial by trial; a robot without rows has 0."""
+        size = pl.col("payload_bytes") + pl.col("header_bytes") if headers else pl.col("payload_bytes")
+        sums = rows.group_by("trial", "robot").agg(size.sum().alias("bytes"))
+        sums = {(trial, robot): size for trial, robot, size in sums.iter_rows()}
+        trials = self.trials.select("trial", "robots", "steps").iter_rows()
+        return [[sums.get((t, r), 0) / max(steps, 1) for r in range(robots)] for t, robots, steps in trials]
+
+    def spread(self, rows, headers=True):
+        trials = self.per_step(rows, headers)
+        pooled = sorted(value for robots in trials for value in robots)
+        return {
+            "min": pooled[0],
+            "median": quantile(pooled, 0.5),
+            "p95": quantile(pooled, 0.95),
+            "max": pooled[-1],
+            "mean": mean([mean(robots)["value"] for robots in trials]),
+        }
+
+    def directions(self, rows):
+        sent, received = (rows.filter(direction=direction) for direction in ("tx", "rx"))
+        return {
+            "tx_bytes_per_step": self.spread(sent),
+            "rx_bytes_per_step": self.spread(received),
+            "tx_payload_bytes_per_step": self.spread(sent, headers=False),
+            "rx_payload_bytes_per_step": self.spread(received, headers=False),
+        }
+
+    def of_topic(self, topic):
+        rows = self.bandwidth.filter(topic=topic)
+        sent = rows.filter(direction="tx")
+        headers, payload = sent["header_bytes"].sum(), sent["payload_bytes"].sum()
+        return {
+            **self.directions(rows),
+            "lost_bytes_per_step": self.spread(rows.filter(pl.col("direction").str.starts_with("lost_"))),
+            "header_share": {"value": headers / (headers + payload) if headers + payload else None},
+        }
+
+    def fates(self, rows):
+        counts = {fate: rows[fate].sum() for fate in ("offered", "delivered", "in_flight")}
+        lost = {cause: rows[f"lost_{cause}"].sum() for cause in self.causes}
+        assert counts["offered"] == counts["delivered"] + counts["in_flight"] + sum(lost.values()), "a copy has no fate"
+        return {**counts, "lost": lost}
+
+    def delivery_ratios(self):
+        for trial in self.trials["trial"]:
+            rows = self.frames.filter(trial=trial)
+            offered = rows["offered"].sum()
+            yield rows["delivered"].sum() / offered if offered else None
+
+    def latencies(self):
+        buckets = self.latency.group_by("low_ns", "high_ns").agg(pl.col("count").sum()).sort("low_ns").rows()
+        count = sum(bucket[2] for bucket in buckets)
+        least, most = self.trials["latency_min_ns"].min(), self.trials["latency_max_ns"].max()
+
+        def at(q):
+            below = 0
+            for low, high, held in buckets:
+                below += held
+                if below >= min(max(math.ceil(q * count), 1), count):
+                    return min(max(low + (high - low) // 2, least), most) / 1e9
+            return None
+
+        counts = dict(self.latency.group_by("trial").agg(pl.col("count").sum()).iter_rows())
+        sums = self.trials.select("trial", "latency_sum_ns").iter_rows()
+        means = [nanos / counts[trial] / 1e9 if trial in counts else None for trial, nanos in sums]
+        return {"p50": at(0.5), "p95": at(0.95), "p99": at(0.99), "mean": mean(means)}
+
+    def samples(self, figure):
+        """A figure of each trial's connectivity samples, `None` where there are none."""
+        for trial in self.trials["trial"]:
+            rows = self.connectivity.filter(trial=trial)
+            yield figure(rows) if len(rows) else None
+
+    def completion(self):
+        """Steps to completion, or the steps watched in vain, of trials with a mission."""
+        rows = self.trials.select("outcome", "steps_to_completion", "steps").iter_rows()
+        times = {"completed": lambda done, _: (done, True), "censored": lambda _, steps: (steps, False)}
+        return [times[outcome](done, steps) for outcome, done, steps in rows if outcome != "no_mission"]
+
+    def summary(self):
+        times = self.completion()
+        completed = sum(done for _, done in times)
+        digests = b"".join(int(digest, 16).to_bytes(16, "little") for digest in self.trials["digest"])
+        least = list(self.samples(lambda rows: rows["lambda2"].min()))
+        sent, received = (self.per_step(self.bandwidth.filter(direction=d)) for d in ("tx", "rx"))
+        return {
+            "trials": len(self.trials),
+            "completed": completed,
+            "digest": xxhash.xxh3_128_hexdigest(digests),
+            "completion_ratio": wilson(completed, len(times)),
+            "steps_to_completion": {"median": kaplan_meier(times)},
+            "frames": {
+                **self.fates(self.frames),
+                "by_topic": {topic: self.fates(self.frames.filter(topic=topic)) for topic in self.topics},
+            },
+            "delivery_ratio": mean(list(self.delivery_ratios())),
+            "latency_s": self.latencies(),
+            "bandwidth": {
+                **self.directions(self.bandwidth),
+                "by_topic": {topic: self.of_topic(topic) for topic in self.topics},
+                "by_role": {role: self.directions(self.bandwidth.filter(role=role)) for role in self.roles},
+            },
+            "load_imbalance": {"tx": mean([gini(t) for t in sent]), "rx": mean([gini(t) for t in received])},
+            "lambda2_min": {**median(least), "min": min((v for v in least if v is not None), default=None)},
+            "connected_share": mean(list(self.samples(lambda rows: (rows["components"] == 1).sum() / len(rows)))),
+            "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]]),
+            "steps": {"value": self.trials["steps"].sum()},
+            "simulated_s": {"value": total(self.trials["simulated_s"])},
+        }
+
+
+def leaves(value, path=""):
+    """Every figure with its path; units and names are no figures."""
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            if key not in ("unit", "scenario"):
+                yield from leaves(inner, f"{path}.{key}" if path else key)
+    elif isinstance(value, list):
+        for index, inner in enumerate(value):
+            yield from leaves(inner, f"{path}[{index}]")
+    else:
+        yield path, value
+
+
+def agree(path, stated, found):
+    if stated is None or found is None or "ci95" not in path:
+        return stated == found
+    return math.isclose(stated, found, rel_tol=INTERVAL_TOLERANCE, abs_tol=INTERVAL_TOLERANCE)
+
+
+def disagreements(folder):
+    stated = dict(leaves(json.loads((folder / "summary.json").read_text(encoding="utf-8"))))
+    found = dict(leaves(Folder(folder).summary()))
+    for path in stated.keys() | found.keys():
+        if path not in found:
+            yield f"{path}: not recomputed"
+        elif path not in stated:
+            yield f"{path}: not in summary.json"
+        elif not agree(path, stated[path], found[path]):
+            yield f"{path}: {stated[path]!r} stated, {found[path]!r} recomputed"
+    manifest = json.loads((folder / "manifest.json").read_text(encoding="utf-8"))
+    for name, entry in manifest["files"].items():
+        content = (folder / name).read_bytes()
+        if (len(content), xxhash.xxh3_128_hexdigest(content)) != (entry["bytes"], entry["xxh3_128"]):
+            yield f"{name}: not the file that the manifest describes"
+    if not found:
+        yield "nothing to compare"
+
+
+def main(arguments):
+    if not arguments:
+        print(__doc__, file=sys.stderr)
+        return 2
+    status = 0
+    for argument in arguments:
+        wrong = sorted(disagreements(pathlib.Path(argument)))
+        print(f"{argument}: {'disagrees' if wrong else 'every figure agrees'}")
+        for line in wrong:
+            print(f"  {line}")
+            status = 1
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
