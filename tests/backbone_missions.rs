@@ -5,13 +5,16 @@ use std::path::Path;
 use desim::geometry::Vec2;
 use desim::metrics::{Outcome, RobotState, TrialRecord};
 use desim::protocol::backbone::Role;
-use desim::scenario::load;
+use desim::scenario::{Override, load};
 use desim::simulation::{DriverKind, run_trial};
 use tokio_util::sync::CancellationToken;
 
 fn run(file: &str, overrides: &[&str], trial: u32) -> TrialRecord {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(file);
-    let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
+    let overrides: Vec<Override> = overrides
+        .iter()
+        .map(|text| text.parse().expect("an override"))
+        .collect();
     let scenario = load(&path, &overrides).expect("a shipped scenario with valid overrides");
     run_trial(&scenario, trial, DriverKind::Inline, &CancellationToken::new()).expect("the trial reaches its end")
 }
