@@ -3,13 +3,16 @@
 use std::path::Path;
 
 use desim::metrics::TrialRecord;
-use desim::scenario::{Scenario, load};
+use desim::scenario::{Override, Scenario, load};
 use desim::simulation::{DriverKind, run_trial};
 use tokio_util::sync::CancellationToken;
 
 fn scenario(file: &str, overrides: &[&str]) -> Scenario {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios").join(file);
-    let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
+    let overrides: Vec<Override> = overrides
+        .iter()
+        .map(|set| set.parse().expect("a valid override"))
+        .collect();
     load(&path, &overrides).expect("a shipped scenario with valid overrides")
 }
 

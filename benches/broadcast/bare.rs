@@ -42,7 +42,7 @@ pub fn run(workload: &Workload) -> Counts {
     let latency = Normal::new(LATENCY_MEAN_S * 1e9, LATENCY_STD_DEV_S * 1e9).expect("a positive deviation");
     let end = nanos(workload.seconds);
     let mut heap = BinaryHeap::new();
-    for robot in 0..workload.places.len() as u64 {
+    for robot in 0..workload.poses.len() as u64 {
         heap.push(Reverse((random.random_range(0..PERIOD), SEND | robot)));
     }
     let mut counts = Counts {
@@ -94,19 +94,22 @@ pub fn run(workload: &Workload) -> Counts {
 
 /// All ordered pairs within range, found by a grid of cells as wide as the range.
 fn links(workload: &Workload) -> Links {
-    let cells = (workload.side_m / RANGE_M).ceil().max(1.0) as usize;
-    let cell = |metres: f64| (((metres / workload.side_m + 0.5) * cells as f64) as usize).min(cells - 1);
+    let side_m = workload.arena.size.0.get();
+    let cells = (side_m / RANGE_M).ceil().max(1.0) as usize;
+    let cell = |metres: f64| (((metres / side_m + 0.5) * cells as f64) as usize).min(cells - 1);
+    let places = workload.poses.iter().map(|pose| pose.position);
     let mut grid = vec![Vec::new(); cells * cells];
-    for (robot, place) in workload.places.iter().enumerate() {
+    for (robot, place) in places.clone().enumerate() {
         grid[cell(place.y) * cells + cell(place.x)].push(robot);
     }
     let mut first = vec![0];
     let mut count = 0_u32;
-    for (robot, place) in workload.places.iter().enumerate() {
+    for (robot, place) in places.enumerate() {
         let (x, y) = (cell(place.x), cell(place.y));
         for row in y.saturating_sub(1)..=(y + 1).min(cells - 1) {
             for column in x.saturating_sub(1)..=(x + 1).min(cells - 1) {
-                let near = |&&other: &&usize| other != robot && (workload.places[other] - place).norm() <= RANGE_M;
+                let near =
+                    |&&other: &&usize| other != robot && (workload.poses[other].position - place).norm() <= RANGE_M;
                 count += grid[row * cells + column].iter().filter(near).count() as u32;
             }
         }

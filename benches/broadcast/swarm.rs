@@ -3,9 +3,8 @@
 use std::rc::Rc;
 
 use desim::engine::Span;
-use desim::geometry::Pose;
 use desim::metrics::MetricsConfig;
-use desim::motion::ArenaConfig;
+use desim::motion::MotionConfig;
 use desim::protocol::control::{ControlConfig, PhaseConfig};
 use desim::protocol::detector::DetectorConfig;
 use desim::protocol::gossip::GossipConfig;
@@ -16,8 +15,8 @@ use desim::simulation::{DriverKind, Setup};
 use tokio_util::sync::CancellationToken;
 
 use crate::workload::{
-    Counts, LATENCY_MEAN_S, LATENCY_MIN_S, LATENCY_STD_DEV_S, LOSS_PROBABILITY, PERIOD_S, RANGE_M, SEED, TIMEOUT_S,
-    Workload,
+    BODY_RADIUS_M, Counts, LATENCY_MEAN_S, LATENCY_MIN_S, LATENCY_STD_DEV_S, LOSS_PROBABILITY, PERIOD_S, RANGE_M, SEED,
+    TIMEOUT_S, Workload,
 };
 
 pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
@@ -26,17 +25,12 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
     let detector = DetectorConfig::Timeout(Positive::new(TIMEOUT_S));
     let settings = Rc::new(Settings::new(&GossipConfig::default(), &detector, period));
     let robots = workload
-        .places
+        .poses
         .iter()
         .map(|_| Heartbeat::new(Rc::clone(&settings)))
         .collect();
-    let poses = workload
-        .places
-        .iter()
-        .map(|&position| Pose { position, heading: 0.0 })
-        .collect();
     let record = setup
-        .run(poses, robots, driver, &CancellationToken::new())
+        .run(workload.poses.clone(), robots, driver, &CancellationToken::new())
         .expect("the run reaches its end");
     Counts {
         deliveries: record.ledger.iter().map(|topic| topic.delivered).sum(),
@@ -45,13 +39,13 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
 }
 
 fn setup(workload: &Workload) -> Setup {
-    let side = Positive::new(workload.side_m);
     Setup {
         seed: SEED,
         time_limit: Span::from_secs(workload.seconds),
-        arena: ArenaConfig {
-            size: (side, side),
-            ..ArenaConfig::default()
+        arena: workload.arena.clone(),
+        motion: MotionConfig {
+            body_radius: Positive::new(BODY_RADIUS_M),
+            ..MotionConfig::default()
         },
         control: ControlConfig {
             period: Positive::new(PERIOD_S),

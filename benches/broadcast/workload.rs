@@ -1,10 +1,10 @@
 //! The workload that every program runs: the same places, the same laws.
 
-use desim::engine::{Purpose, Streams};
-use desim::geometry::Vec2;
-use rand::RngExt as _;
+use desim::engine::Streams;
+use desim::geometry::Pose;
+use desim::motion::{ArenaConfig, DeployConfig, deploy};
+use desim::quantity::Positive;
 
-const PLACES: Purpose = Purpose::new("bench.places");
 const NEIGHBOURS: f64 = 12.0;
 
 pub const RANGE_M: f64 = 2.0;
@@ -14,12 +14,14 @@ pub const LATENCY_STD_DEV_S: f64 = 0.003;
 pub const LATENCY_MIN_S: f64 = 0.001;
 pub const PERIOD_S: f64 = 0.1;
 pub const TIMEOUT_S: f64 = 1.0;
+/// Small, so that places are uniform: bodies do not overlap.
+pub const BODY_RADIUS_M: f64 = 0.01;
 pub const SEED: u64 = 7;
 
 /// Where the robots are and for how long they talk.
 pub struct Workload {
-    pub side_m: f64,
-    pub places: Vec<Vec2>,
+    pub arena: ArenaConfig,
+    pub poses: Vec<Pose>,
     pub seconds: f64,
 }
 
@@ -32,20 +34,21 @@ pub struct Counts {
 impl Workload {
     pub fn new(robots: u32) -> Self {
         let side_m = side(robots);
-        let streams = Streams::new(SEED, 0).keyed(PLACES);
-        let places = (0..robots)
-            .map(|robot| {
-                let mut random = streams.at(robot, 0, 0);
-                let half = side_m / 2.0;
-                Vec2::new(random.random_range(-half..half), random.random_range(-half..half))
-            })
-            .collect();
+        let side = Positive::new(side_m);
+        let arena = ArenaConfig {
+            size: (side, side),
+            ..ArenaConfig::default()
+        };
+        let poses = deploy(
+            &DeployConfig::Uniform,
+            &arena,
+            robots,
+            BODY_RADIUS_M,
+            &Streams::new(SEED, 0),
+        )
+        .expect("a square of this density has room");
         let seconds = if robots < 1_280 { 60.0 } else { 6.0 };
-        Self {
-            side_m,
-            places,
-            seconds,
-        }
+        Self { arena, poses, seconds }
     }
 }
 

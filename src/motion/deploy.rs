@@ -89,7 +89,9 @@ pub fn deploy(
     let site = Site::new(arena, robots, body_radius);
     let places = match config {
         DeployConfig::Cluster { radius } => site.scatter(Region::Disc(radius.get()), streams.keyed(PLACE)),
-        DeployConfig::Uniform => site.scatter(Region::Arena, streams.keyed(PLACE)),
+        DeployConfig::Uniform => site
+            .scatter(Region::Arena, streams.keyed(PLACE))
+            .map(|places| site.number(places)),
         DeployConfig::At(places) => site.at(places),
     }?;
     let headings = streams.keyed(HEADING);
@@ -108,6 +110,13 @@ pub(super) fn taken(places: &[(Finite, Finite)], arena: &ArenaConfig, body_radiu
 /// Whether robot 0 can stand at the arena's centre.
 pub(super) fn centre_is_free(arena: &ArenaConfig, body_radius: f64) -> bool {
     Arena::new(arena).clearance(Vec2::zeros()) >= body_radius
+}
+
+/// The bits of `coordinate`, each followed by a 0 on its left.
+fn spread_bits(coordinate: u16) -> u32 {
+    (0..u16::BITS).fold(0, |bits, place| {
+        bits | (u32::from(coordinate) >> place & 1) << (2 * place)
+    })
 }
 
 /// Where robots may be put at random.
@@ -164,6 +173,15 @@ impl Site {
             .map(|_| Vec2::new(coordinate(half.x), coordinate(half.y)))
             .filter(|place| place.norm() <= radius)
             .find(|&place| self.check(robot, place, self.body_radius, occupancy).is_ok())
+    }
+
+    /// The same places in the order of a Z-order curve, so that robots that are near each other have near numbers, and
+    /// what the simulator knows of them lies together in memory.
+    fn number(&self, mut places: Vec<Vec2>) -> Vec<Vec2> {
+        let size = 2.0 * self.arena.half();
+        let cell = |metres: f64, size: f64| ((metres / size + 0.5) * f64::from(u16::MAX)) as u16;
+        places.sort_by_cached_key(|place| spread_bits(cell(place.x, size.x)) | spread_bits(cell(place.y, size.y)) << 1);
+        places
     }
 
     fn at(&self, places: &[(Finite, Finite)]) -> Result<Vec<Vec2>, DeployError> {

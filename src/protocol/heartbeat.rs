@@ -11,7 +11,7 @@ use tokio_util::codec::{Decoder, Encoder};
 use super::detector::DetectorConfig;
 use super::gossip::GossipConfig;
 use super::row_index::RowIndex;
-use super::{CodecError, Input, Note, Output, Protocol, TimerId, Topic, Wake};
+use super::{CodecError, Input, Note, Output, Protocol, TimerId, Wake};
 use crate::engine::{ActorId, SimTime, Span};
 
 const DETECTOR: TimerId = TimerId(0);
@@ -131,10 +131,6 @@ impl Protocol for Heartbeat {
     const TOPICS: &'static [&'static str] = &["status"];
     const ROLES: &'static [&'static str] = &["robot"];
     const SENSES_PROXIMITY: bool = false;
-
-    fn topic(_: &Status) -> Topic {
-        Topic(0)
-    }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Status>, output: &mut Output<Status>) {
         for reception in &input.inbox {

@@ -44,8 +44,11 @@ pub trait Protocol: Sized + 'static {
     /// Whether robots read [`Input::proximity`]; if not, it stays empty and costs nothing.
     const SENSES_PROXIMITY: bool = true;
 
-    /// The topic that `message` belongs to.
-    fn topic(message: &Self::Message) -> Topic;
+    /// The topic that `message` belongs to: the first one, if the protocol does not say otherwise.
+    fn topic(message: &Self::Message) -> Topic {
+        let _ = message;
+        Topic(0)
+    }
 
     /// Takes one step: reads `input`, fills `output`.
     fn step(&mut self, now: SimTime, input: &mut Input<Self::Message>, output: &mut Output<Self::Message>);

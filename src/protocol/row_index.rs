@@ -63,9 +63,9 @@ impl RowIndex {
                 if slot.row == VACANT {
                     return;
                 }
-                let home = self.home(slot.id);
+                let wanted = self.home(slot.id);
                 let mask = self.slots.len() - 1;
-                if next.wrapping_sub(home) & mask >= next.wrapping_sub(hole) & mask {
+                if next.wrapping_sub(wanted) & mask >= next.wrapping_sub(hole) & mask {
                     self.slots[hole] = slot;
                     hole = next;
                     break;

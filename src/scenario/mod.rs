@@ -103,6 +103,7 @@ pub struct SwarmConfig {
 
 /// The protocol that robots run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[allow(clippy::large_enum_variant)] // There is one a scenario.
 pub enum ProtocolConfig {
     /// The paper's failure-tolerant connectivity backbone.
     Backbone(BackboneConfig),

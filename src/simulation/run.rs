@@ -55,6 +55,10 @@ impl EventKey for Event {
 
 type JobFor<P> = Job<Input<<P as Protocol>::Message>, Output<<P as Protocol>::Message>>;
 
+/// Jobs, each in a box of its own: they travel through mailboxes, and the box is what moves.
+#[allow(clippy::vec_box)]
+type Jobs<P> = Vec<Box<JobFor<P>>>;
+
 /// The fixed rhythms of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Rhythm {
@@ -82,8 +86,8 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     clocks: Vec<WakeClock>,
     wakes: Vec<u32>,
     randomness: KeyedStreams,
-    batch: Vec<Box<JobFor<P>>>,
-    spare_jobs: Vec<Box<JobFor<P>>>,
+    batch: Jobs<P>,
+    spare_jobs: Jobs<P>,
     reached: Vec<ActorId>,
     positions: Vec<Vec2>,
     events: u64,
@@ -99,7 +103,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         world: World,
         air: Air<P>,
         recorder: Recorder,
-        streams: &Streams,
+        streams: Streams,
         first_steps: &[SimTime],
     ) -> Self {
         let mut queue = EventQueue::with_capacity(first_steps.len() + 3);
@@ -135,7 +139,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     }
 
     /// Runs to the end and returns what it leaves behind.
-    pub async fn to_end(mut self, trial: u32, seed: u64, stop: &CancellationToken) -> Result<TrialRecord, RunError> {
+    pub async fn until_end(mut self, trial: u32, seed: u64, stop: &CancellationToken) -> Result<TrialRecord, RunError> {
         let mut end = self.rhythm.time_limit;
         while let Some((event, now)) = self.queue.peek() {
             if now > self.rhythm.time_limit {
@@ -300,7 +304,8 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         self.recorder.finish(RunEnd {
             trial,
             seed,
-            steps: end.as_nanos() / self.rhythm.control_period.as_nanos(),
+            // The first control step is at time zero, so one more than the periods that fit.
+            steps: end.as_nanos() / self.rhythm.control_period.as_nanos() + 1,
             simulated: end,
             events: self.events,
             digest: self.digest.finish(),

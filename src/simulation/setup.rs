@@ -63,6 +63,15 @@ pub struct Setup {
 }
 
 impl Setup {
+    /// The default world for so long: an empty arena of 10 × 10 m, a radio that loses nothing, no mission.
+    #[must_use]
+    pub fn lasting(time_limit: Span) -> Self {
+        Self {
+            time_limit,
+            ..Self::default()
+        }
+    }
+
     /// The random streams of this run.
     #[must_use]
     pub fn streams(&self) -> Streams {
@@ -102,7 +111,7 @@ impl Setup {
     ) -> Result<TrialRecord, RunError> {
         let streams = self.streams();
         let robots = poses.len();
-        let first_steps = self.first_steps(robots, &streams);
+        let first_steps = self.first_steps(robots, streams);
         let world = World::new(&self.motion, &self.arena, poses, self.radio.range.get());
         let rhythm = self.rhythm();
         let air = Air::<P>::new(
@@ -111,8 +120,8 @@ impl Setup {
             rhythm.wake_on_reception,
         );
         let recorder = Recorder::new(self.layout::<P>(robots), &self.metrics);
-        let run = Run::new(rhythm, driver, world, air, recorder, &streams, &first_steps);
-        run.to_end(self.trial, self.seed, stop).await
+        let run = Run::new(rhythm, driver, world, air, recorder, streams, &first_steps);
+        run.until_end(self.trial, self.seed, stop).await
     }
 
     fn rhythm(&self) -> Rhythm {
@@ -138,7 +147,7 @@ impl Setup {
     }
 
     /// When each robot takes its first control step.
-    fn first_steps(&self, robots: usize, streams: &Streams) -> Vec<SimTime> {
+    fn first_steps(&self, robots: usize, streams: Streams) -> Vec<SimTime> {
         let phases = streams.keyed(PHASE);
         let period = Span::from_secs(self.control.period.get()).as_nanos();
         (0..robots as u32)

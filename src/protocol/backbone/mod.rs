@@ -150,9 +150,14 @@ impl Backbone {
         let (me, step) = (self.known.id, self.known.step);
         let known = match &mut self.duty {
             Duty::Networker(networker) => networker.slot.hear_parent_strand(sender, strand, me, step),
-            Duty::Worker(worker) => worker.slots.iter_mut().fold(false, |known, slot| {
-                slot.hear_parent_strand(sender, strand, me, step) || known
-            }),
+            Duty::Worker(worker) => {
+                // Every slot hears it: no short cut after the first that knows the sender.
+                let known = worker
+                    .slots
+                    .iter_mut()
+                    .map(|slot| slot.hear_parent_strand(sender, strand, me, step));
+                known.fold(false, std::ops::BitOr::bitor)
+            }
             Duty::Free | Duty::Root(_) => false,
         };
         if !known && strand.next == me && sender != me {
