@@ -46,6 +46,7 @@ pub fn run(workload: &Workload) -> Counts {
         heap.push(Reverse((random.random_range(0..PERIOD), SEND | robot)));
     }
     let mut counts = Counts {
+        simulated_s: workload.seconds,
         deliveries: 0,
         suspicions: 0,
     };

@@ -10,12 +10,15 @@
 mod bare;
 mod measure;
 mod swarm;
+mod trial;
 mod workload;
 
+use desim::simulation::DriverKind;
 use measure::Sample;
-use workload::Workload;
+use workload::{Counts, Workload};
 
 const PROGRAMS: [&str; 3] = ["bare", "inline", "actors"];
+const TRIALS: [&str; 2] = ["trial, inline", "trial, actors"];
 const SIZES: [u32; 3] = [80, 1_280, 20_480];
 
 fn main() {
@@ -35,25 +38,31 @@ fn main() {
 
 /// Runs one program and measures it from inside its own process.
 fn run_one(program: &str, robots: u32) -> Sample {
-    let workload = Workload::new(robots);
+    let broadcast = |run: fn(&Workload) -> Counts| {
+        let workload = Workload::new(robots);
+        measure::sample(|| run(&workload))
+    };
     match program {
-        "bare" => measure::sample(|| bare::run(&workload)),
-        "inline" => measure::sample(|| swarm::run(&workload, desim::simulation::DriverKind::Inline)),
-        "actors" => measure::sample(|| swarm::run(&workload, desim::simulation::DriverKind::Actors)),
+        "bare" => broadcast(bare::run),
+        "inline" => broadcast(|workload| swarm::run(workload, DriverKind::Inline)),
+        "actors" => broadcast(|workload| swarm::run(workload, DriverKind::Actors)),
+        "trial, inline" => measure::sample(|| trial::run(DriverKind::Inline)),
+        "trial, actors" => measure::sample(|| trial::run(DriverKind::Actors)),
         other => panic!("no program is called `{other}`"),
     }
 }
 
 fn compare(rounds: usize) {
+    println!("User CPU of one process; medians of {rounds} rounds, ratios taken within each round.\n");
     println!(
-        "broadcast: 12 neighbours, loss 0.2, latency 10 ± 3 ms, timeout 1.0 s; user CPU of one process, median of {rounds} rounds\n"
+        "broadcast: 12 neighbours, loss 0.2, latency 10 ± 3 ms, timeout 1.0 s. Sends, losses and timers included."
     );
     println!(
-        "{:>7}  {:8} {:>12} {:>14} {:>10} {:>12} {:>14} {:>11}",
+        "{:>7}  {:8} {:>12} {:>13} {:>8} {:>12} {:>16} {:>11}",
         "robots", "program", "deliveries", "ns/delivery", "of bare", "per second", "peak memory", "suspicions"
     );
     for robots in SIZES {
-        let results: Vec<Vec<Sample>> = measure::rounds(rounds, &PROGRAMS, robots);
+        let results = measure::rounds(rounds, &PROGRAMS, robots);
         for (program, samples) in PROGRAMS.iter().zip(&results) {
             let ratios = samples
                 .iter()
@@ -62,7 +71,7 @@ fn compare(rounds: usize) {
             let nanos = measure::median(samples.iter().map(Sample::nanos));
             let sample = &samples[0];
             println!(
-                "{robots:>7}  {program:8} {:>12} {nanos:>14.1} {:>9.2}x {:>11.2}M {:>6.2} kB/robot {:>11}",
+                "{robots:>7}  {program:8} {:>12} {nanos:>13.1} {:>7.2}x {:>11.2}M {:>6.2} kB/robot {:>11}",
                 sample.deliveries,
                 measure::median(ratios),
                 1e3 / nanos,
@@ -71,5 +80,14 @@ fn compare(rounds: usize) {
             );
         }
     }
-    println!("\nper delivery: sends, losses and timers included");
+    println!("\nthe paper's 80-robot trial with 4 links (scenarios/paper/completion_80x4.ron, trial 0):");
+    for (program, samples) in TRIALS.iter().zip(measure::rounds(rounds, &TRIALS, trial::ROBOTS)) {
+        println!(
+            "{program:>15}: {:.0} times real time, {:.1} ns/delivery, {:.1}M deliveries a second, {:.0} s simulated",
+            measure::median(samples.iter().map(Sample::speed)),
+            measure::median(samples.iter().map(Sample::nanos)),
+            measure::median(samples.iter().map(|sample| 1e3 / sample.nanos())),
+            samples[0].simulated_s,
+        );
+    }
 }

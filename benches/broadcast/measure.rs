@@ -8,6 +8,7 @@ use crate::workload::Counts;
 
 /// One run of one program.
 pub struct Sample {
+    pub simulated_s: f64,
     pub deliveries: u64,
     pub suspicions: u64,
     pub user_nanos: u64,
@@ -20,21 +21,33 @@ impl Sample {
         self.user_nanos as f64 / self.deliveries as f64
     }
 
+    /// Simulated seconds a second of user CPU: how many times faster than real time.
+    pub fn speed(&self) -> f64 {
+        self.simulated_s / (self.user_nanos as f64 / 1e9)
+    }
+
     pub fn to_line(&self) -> String {
+        let counts = [self.deliveries, self.suspicions, self.user_nanos, self.peak_kib];
         format!(
-            "{} {} {} {}",
-            self.deliveries, self.suspicions, self.user_nanos, self.peak_kib
+            "{} {}",
+            self.simulated_s,
+            counts.map(|count| count.to_string()).join(" ")
         )
     }
 
     fn of_line(line: &str) -> Self {
-        let mut words = line.split_whitespace().map(|word| word.parse().expect("a number"));
-        let mut next = || words.next().expect("four numbers");
+        let mut words = line.split_whitespace();
+        let simulated_s = words
+            .next()
+            .and_then(|word| word.parse().ok())
+            .expect("a number of seconds");
+        let mut count = || words.next().and_then(|word| word.parse().ok()).expect("four counts");
         Self {
-            deliveries: next(),
-            suspicions: next(),
-            user_nanos: next(),
-            peak_kib: next(),
+            simulated_s,
+            deliveries: count(),
+            suspicions: count(),
+            user_nanos: count(),
+            peak_kib: count(),
         }
     }
 }
@@ -45,6 +58,7 @@ pub fn sample(program: impl FnOnce() -> Counts) -> Sample {
     let counts = program();
     let usage = getrusage(UsageWho::RUSAGE_SELF).expect("the system accounts for its processes");
     Sample {
+        simulated_s: counts.simulated_s,
         deliveries: counts.deliveries,
         suspicions: counts.suspicions,
         user_nanos: user_nanos() - before,

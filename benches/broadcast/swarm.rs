@@ -33,6 +33,7 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
         .run(workload.poses.clone(), robots, driver, &CancellationToken::new())
         .expect("the run reaches its end");
     Counts {
+        simulated_s: workload.seconds,
         deliveries: record.ledger.iter().map(|topic| topic.delivered).sum(),
         suspicions: record.suspicions,
     }

@@ -27,6 +27,7 @@ pub struct Workload {
 
 /// What a program counted.
 pub struct Counts {
+    pub simulated_s: f64,
     pub deliveries: u64,
     pub suspicions: u64,
 }
