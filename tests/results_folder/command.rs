@@ -207,7 +207,7 @@ fn a_reader_that_leaves_early_is_no_fault() {
 #[test]
 fn a_terminated_run_keeps_its_trials_and_goes_on() {
     let dir = place();
-    let long = [
+    let arguments = [
         "scenario",
         "small.ron",
         "--set",
@@ -219,7 +219,7 @@ fn a_terminated_run_keeps_its_trials_and_goes_on() {
         "--quiet",
     ];
     let mut child = Process::new(env!("CARGO_BIN_EXE_desim"))
-        .args(long)
+        .args(arguments)
         .env("DESIM_LOG", "info")
         .current_dir(dir.path())
         .stderr(Stdio::piped())
@@ -232,14 +232,14 @@ fn a_terminated_run_keeps_its_trials_and_goes_on() {
         .status()
         .unwrap();
     assert!(signal.success());
-    let mut tail = String::new();
-    log.read_to_string(&mut tail).unwrap();
+    let mut last_words = String::new();
+    log.read_to_string(&mut last_words).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert!(tail.contains("of 40 trials are kept in results/small"), "{tail}");
+    assert!(last_words.contains("of 40 trials are kept in results/small"), "{last_words}");
 
     let kept = || fs::read_dir(dir.path().join("results/small/.trials")).unwrap().count();
     assert!(kept() > 1);
-    let resumed = desim(dir.path(), &long)
+    let resumed = desim(dir.path(), &arguments)
         .timeout(Duration::from_mins(5))
         .assert()
         .success();
