@@ -3,8 +3,8 @@
 //! All tasks live on the caller's thread. A simulated instant has one order of events, so threads inside a run
 //! would only wait for each other; trials are what runs in parallel.
 
-use tokio::runtime::{Builder, LocalRuntime};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+use tokio::task::spawn_local;
 
 use super::process::{Driver, JobOf, Process};
 
@@ -15,7 +15,6 @@ pub struct Actors<P: Process> {
     mailboxes: Vec<UnboundedSender<Mail<P>>>,
     answers: UnboundedReceiver<Mail<P>>,
     returned: Vec<Option<Box<JobOf<P>>>>,
-    runtime: LocalRuntime,
 }
 
 impl<P> Actors<P>
@@ -26,25 +25,24 @@ where
 {
     /// Spawns one task for each of `processes`, the actors in order of their ids.
     ///
-    /// # Errors
-    /// If the operating system refuses the runtime what it needs.
-    pub fn spawn(processes: Vec<P>) -> std::io::Result<Self> {
-        let runtime = Builder::new_current_thread().build_local(tokio::runtime::LocalOptions::default())?;
+    /// # Panics
+    /// Outside [`block_on`](super::block_on): tasks need a runtime to live in.
+    #[must_use]
+    pub fn spawn(processes: Vec<P>) -> Self {
         let (answer, answers) = unbounded_channel();
         let mailboxes = processes
             .into_iter()
             .map(|process| {
                 let (mailbox, mail) = unbounded_channel();
-                runtime.spawn_local(live(process, mail, answer.clone()));
+                spawn_local(live(process, mail, answer.clone()));
                 mailbox
             })
             .collect();
-        Ok(Self {
+        Self {
             mailboxes,
             answers,
             returned: Vec::new(),
-            runtime,
-        })
+        }
     }
 }
 
@@ -61,28 +59,17 @@ async fn live<P: Process>(mut process: P, mut mail: UnboundedReceiver<Mail<P>>, 
 impl<P: Process> Driver<P> for Actors<P> {
     /// # Panics
     /// If an actor panicked: its answer never comes.
-    fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) {
+    async fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) {
         let pending = jobs.len();
         self.returned.resize_with(pending, || None);
         for (slot, job) in jobs.drain(..).enumerate() {
             let delivered = self.mailboxes[job.actor.index()].send((slot, job));
             assert!(delivered.is_ok(), "an actor ended before its run did");
         }
-        let Self {
-            runtime,
-            answers,
-            returned,
-            ..
-        } = self;
-        runtime.block_on(async {
-            for _ in 0..pending {
-                let (slot, job) = answers
-                    .recv()
-                    .await
-                    .expect("the driver holds the actors' tasks, so a sender lives");
-                returned[slot] = Some(job);
-            }
-        });
-        jobs.extend(returned.drain(..).flatten());
+        for _ in 0..pending {
+            let (slot, job) = self.answers.recv().await.expect("every actor answers its mail");
+            self.returned[slot] = Some(job);
+        }
+        jobs.extend(self.returned.drain(..).flatten());
     }
 }

@@ -17,7 +17,7 @@ impl<P> Inline<P> {
 }
 
 impl<P: Process> Driver<P> for Inline<P> {
-    fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) {
+    async fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) {
         for job in jobs {
             self.processes[job.actor.index()].handle(job.now, &mut job.input, &mut job.output);
         }

@@ -5,6 +5,7 @@ mod inline;
 mod process;
 mod queue;
 mod random;
+mod runtime;
 mod time;
 
 pub use actors::Actors;
@@ -12,4 +13,5 @@ pub use inline::Inline;
 pub use process::{ActorId, Driver, Job, JobOf, Process};
 pub use queue::{EventKey, EventQueue};
 pub use random::{KeyedStreams, Purpose, Streams};
+pub use runtime::block_on;
 pub use time::{SimTime, Span};

@@ -53,5 +53,5 @@ pub type JobOf<P> = Job<<P as Process>::Input, <P as Process>::Output>;
 /// Runs actors: takes their jobs to them and brings the answers back.
 pub trait Driver<P: Process> {
     /// Handles `jobs`, at most one an actor and all at one instant, and leaves them in the order given.
-    fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>);
+    fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) -> impl Future<Output = ()>;
 }

@@ -65,7 +65,8 @@ impl Span {
     /// A span of `seconds`, rounded to the nearest nanosecond; negative and NaN become zero.
     #[must_use]
     pub fn from_secs(seconds: f64) -> Self {
-        Self((seconds * NANOS_PER_SECOND).round() as u64)
+        // Adding a half and cutting off is rounding for what is not negative, without a call to the maths library.
+        Self((seconds * NANOS_PER_SECOND + 0.5) as u64)
     }
 
     /// Length in nanoseconds.

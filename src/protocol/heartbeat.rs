@@ -10,6 +10,7 @@ use tokio_util::codec::{Decoder, Encoder};
 
 use super::detector::DetectorConfig;
 use super::gossip::GossipConfig;
+use super::row_index::RowIndex;
 use super::{CodecError, Input, Note, Output, Protocol, TimerId, Topic, Wake};
 use crate::engine::{ActorId, SimTime, Span};
 
@@ -49,15 +50,20 @@ pub struct Heartbeat {
     settings: Rc<Settings>,
     control_steps: u64,
     sent: u32,
-    /// Neighbours ever heard, sorted: a row of the three vectors is a neighbour.
-    neighbours: Vec<ActorId>,
-    /// Arrival of the last status of each.
-    last_heard: Vec<SimTime>,
-    /// Whether each is suspected.
-    suspected: Vec<bool>,
+    /// Neighbours ever heard, a row each.
+    neighbours: Vec<Neighbour>,
+    rows: RowIndex,
     /// When the detector's timer fires: never later than the earliest timeout. It is checked then and set again, so that
     /// an arrival costs a store and not a timer.
     armed: SimTime,
+}
+
+#[derive(Debug)]
+struct Neighbour {
+    id: ActorId,
+    suspected: bool,
+    /// Arrival of its last status.
+    last_heard: SimTime,
 }
 
 impl Heartbeat {
@@ -69,28 +75,28 @@ impl Heartbeat {
             control_steps: 0,
             sent: 0,
             neighbours: Vec::new(),
-            last_heard: Vec::new(),
-            suspected: Vec::new(),
+            rows: RowIndex::default(),
             armed: SimTime::NEVER,
         }
     }
 
     fn hear(&mut self, sender: ActorId, at: SimTime, output: &mut Output<Status>) {
-        match self.neighbours.binary_search(&sender) {
-            Ok(row) => {
-                self.last_heard[row] = at;
-                if self.suspected[row] {
-                    self.suspected[row] = false;
-                    output.notes.push(Note::Trusts(sender));
-                    self.arm(at + self.settings.timeout, output);
-                }
-            }
-            Err(row) => {
-                self.neighbours.insert(row, sender);
-                self.last_heard.insert(row, at);
-                self.suspected.insert(row, false);
-                self.arm(at + self.settings.timeout, output);
-            }
+        let Some(row) = self.rows.get(sender) else {
+            self.rows.set(sender, self.neighbours.len());
+            self.neighbours.push(Neighbour {
+                id: sender,
+                suspected: false,
+                last_heard: at,
+            });
+            self.arm(at + self.settings.timeout, output);
+            return;
+        };
+        let neighbour = &mut self.neighbours[row];
+        neighbour.last_heard = at;
+        if neighbour.suspected {
+            neighbour.suspected = false;
+            output.notes.push(Note::Trusts(sender));
+            self.arm(at + self.settings.timeout, output);
         }
     }
 
@@ -104,14 +110,11 @@ impl Heartbeat {
     fn suspect_the_silent(&mut self, now: SimTime, output: &mut Output<Status>) {
         self.armed = SimTime::NEVER;
         let mut next = SimTime::NEVER;
-        for (row, &heard) in self.last_heard.iter().enumerate() {
-            let due = heard + self.settings.timeout;
-            if self.suspected[row] {
-                continue;
-            }
+        for neighbour in self.neighbours.iter_mut().filter(|neighbour| !neighbour.suspected) {
+            let due = neighbour.last_heard + self.settings.timeout;
             if due <= now {
-                self.suspected[row] = true;
-                output.notes.push(Note::Suspects(self.neighbours[row]));
+                neighbour.suspected = true;
+                output.notes.push(Note::Suspects(neighbour.id));
             } else {
                 next = next.min(due);
             }

@@ -2,7 +2,11 @@
 
 use rand_philox::{Philox, u32_to_unit_f64};
 
-use crate::engine::{ActorId, KeyedStreams};
+use crate::engine::{ActorId, KeyedStreams, Purpose};
+
+/// The stream of a copy through the channel: its first 64 bits decide its loss, whether or not the model can lose it,
+/// and what follows makes its latency.
+pub(super) const CHANNEL: Purpose = Purpose::new("radio.channel");
 
 /// One copy of a frame, on its way from its sender to one listener.
 #[derive(Clone, Copy, Debug)]

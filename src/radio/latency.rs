@@ -4,17 +4,12 @@ use rand_distr::{Distribution, Exp1, Gamma, StandardNormal, StandardUniform};
 use rand_philox::Philox;
 
 use super::config::LatencyConfig;
-use super::draw::FrameCopy;
-use crate::engine::{KeyedStreams, Purpose, Span, Streams};
-
-/// The stream of a copy's latency.
-const LATENCY: Purpose = Purpose::new("radio.latency");
+use crate::engine::Span;
 
 /// A latency model.
 #[derive(Debug)]
 pub(super) struct Latency {
     model: Model,
-    draws: KeyedStreams,
 }
 
 #[derive(Debug)]
@@ -35,19 +30,23 @@ enum Law {
 
 impl Latency {
     /// The model that `config` describes.
-    pub fn new(config: &LatencyConfig, streams: Streams) -> Self {
+    pub fn new(config: &LatencyConfig) -> Self {
         Self {
             model: Model::new(config),
-            draws: streams.keyed(LATENCY),
         }
     }
 
-    /// The latency of `copy`, rounded to the nearest nanosecond.
+    /// Whether every copy takes the same time.
+    pub fn is_constant(&self) -> bool {
+        matches!(self.model, Model::Constant(_))
+    }
+
+    /// The latency of a copy, drawn from `channel`, its own stream, and rounded to the nearest nanosecond.
     #[inline]
-    pub fn of(&self, copy: FrameCopy) -> Span {
+    pub fn draw(&self, channel: &mut Philox) -> Span {
         match &self.model {
             Model::Constant(span) => *span,
-            Model::Random(law) => Span::from_secs(law.draw(&mut copy.stream(self.draws))),
+            Model::Random(law) => Span::from_secs(law.draw(channel)),
         }
     }
 }

@@ -1,18 +1,14 @@
-//! Which copies the channel drops.
+//! How likely the channel is to drop a copy.
 
 use super::config::LossConfig;
 use super::draw::FrameCopy;
 use super::gilbert::GilbertElliott;
-use crate::engine::{KeyedStreams, Purpose, Streams};
-
-/// The uniform that decides a loss, in every model.
-const LOSS: Purpose = Purpose::new("radio.loss");
+use crate::engine::Streams;
 
 /// A loss model with its state.
 #[derive(Debug)]
 pub(super) struct Loss {
     model: Model,
-    draws: KeyedStreams,
 }
 
 #[derive(Debug)]
@@ -51,16 +47,18 @@ impl Loss {
                 range_squared: range * range,
             },
         };
-        Self {
-            model,
-            draws: streams.keyed(LOSS),
-        }
+        Self { model }
     }
 
-    /// Whether the channel drops `copy`, which has the square root of `distance_squared` metres to go.
+    /// Whether no copy is ever lost.
+    pub fn is_none(&self) -> bool {
+        matches!(self.model, Model::Bernoulli(probability) if probability == 0.0)
+    }
+
+    /// The probability that the channel drops `copy`, which has the square root of `distance_squared` metres to go.
     #[inline]
-    pub fn drops(&mut self, copy: FrameCopy, distance_squared: f64) -> bool {
-        let probability = match &mut self.model {
+    pub fn probability(&mut self, copy: FrameCopy, distance_squared: f64) -> f64 {
+        match &mut self.model {
             Model::Bernoulli(probability) => *probability,
             Model::GilbertElliott(links) => links.loss_probability(copy),
             Model::Distance {
@@ -68,7 +66,6 @@ impl Loss {
                 half_exponent,
                 range_squared,
             } => *at_range * (distance_squared / *range_squared).powf(*half_exponent),
-        };
-        copy.happens(probability, self.draws)
+        }
     }
 }

@@ -1,12 +1,12 @@
 //! The shared medium.
 
 use super::config::RadioConfig;
-use super::draw::FrameCopy;
+use super::draw::{CHANNEL, FrameCopy};
 use super::latency::Latency;
 use super::loss::Loss;
 use super::sensing::Sensing;
 use super::{Fate, Listener, LossCause};
-use crate::engine::{ActorId, SimTime, Streams};
+use crate::engine::{ActorId, KeyedStreams, SimTime, Streams};
 
 /// The radio of one run: settles the fate of every copy of every frame.
 #[derive(Debug)]
@@ -16,6 +16,9 @@ pub struct Medium {
     sequences: Vec<u32>,
     loss: Loss,
     latency: Latency,
+    channel: KeyedStreams,
+    /// Whether the fate of a copy needs its channel's stream at all.
+    is_random: bool,
     sensing: Sensing,
 }
 
@@ -32,11 +35,15 @@ impl Medium {
             "the radio's configuration is unusable: {problems:?}"
         );
         let range = config.range.get();
+        let loss = Loss::new(&config.loss, range, *streams, robots);
+        let latency = Latency::new(&config.latency);
         Self {
             range,
             sequences: vec![0; robots],
-            loss: Loss::new(&config.loss, range, *streams, robots),
-            latency: Latency::new(&config.latency, *streams),
+            channel: streams.keyed(CHANNEL),
+            is_random: !(loss.is_none() && latency.is_constant()),
+            loss,
+            latency,
             sensing: Sensing::new(&config.sensing, *streams),
         }
     }
@@ -94,14 +101,23 @@ impl Medium {
     #[allow(clippy::inline_always)]
     #[inline(always)]
     fn fate(&mut self, now: SimTime, copy: FrameCopy, listener: Listener) -> Fate {
-        if self.loss.drops(copy, listener.sender.norm_squared()) {
+        let mut channel = copy.stream(self.channel);
+        let probability = self.loss.probability(copy, listener.sender.norm_squared());
+        if self.is_random && unit_interval(channel.next_u64()) < probability {
             return Fate::Lost(LossCause::Channel);
         }
         Fate::Arrives {
-            at: now + self.latency.of(copy),
+            at: now + self.latency.draw(&mut channel),
             displacement: self.sensing.displacement(copy, listener.sender),
         }
     }
+}
+
+/// 64 random bits as a number in [0, 1), on a grid of 2⁻⁵³: below 1, so that a probability of 1 always happens, and not
+/// below 0, so that one of 0 never does.
+#[inline]
+fn unit_interval(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@
 //! model says whether the copy survives, the latency model when it arrives, the sensing model where its receiver
 //! believes the sender to be. Receivers are independent of one another, and a late copy holds up no other.
 //!
-//! Every draw is keyed by purpose, sender, receiver and the sender's frame number, and each purpose has one uniform or
-//! one stream of its own a copy. So the fate of a copy depends neither on who else listens nor on the order in which
+//! Every draw is keyed by purpose, sender, receiver and the sender's frame number: a copy has one stream for the channel,
+//! whose first draw decides its loss and the next ones its latency, and one for sensing. So the fate of a copy depends neither on who else listens nor on the order in which
 //! listeners are named; the frames lost at 10 % are among those lost at 30 %; and a frame that survives under two loss
 //! settings has the same latency under both. A model that needs no randomness opens no stream.
 //!

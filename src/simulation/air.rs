@@ -14,6 +14,13 @@ use crate::motion::World;
 use crate::protocol::{Frame, Protocol, Reception};
 use crate::radio::{Fate, Listener, Medium};
 
+/// A copy that will arrive.
+struct Arrival {
+    receiver: ActorId,
+    at: SimTime,
+    displacement: [f32; 2],
+}
+
 /// The radio's side of a run.
 pub struct Air<P: Protocol> {
     medium: Medium,
@@ -22,6 +29,9 @@ pub struct Air<P: Protocol> {
     /// The payload under way, and who hears the present sender: buffers, kept to be used again.
     payload: BytesMut,
     listeners: Vec<Listener>,
+    /// The copies of the present frame that will arrive. Fates are decided first and inboxes filled after: the one is
+    /// arithmetic, the other waits for memory, and apart each runs at its own pace.
+    arrivals: Vec<Arrival>,
     /// Receivers whose next arrival may have come forward, for scenarios that wake robots on reception.
     reached: Vec<ActorId>,
     tell_reached: bool,
@@ -36,6 +46,7 @@ impl<P: Protocol> Air<P> {
             inboxes: std::iter::repeat_with(Inbox::default).take(robots).collect(),
             payload: BytesMut::with_capacity(256),
             listeners: Vec::new(),
+            arrivals: Vec::new(),
             reached: Vec::new(),
             tell_reached: wake_on_reception,
         }
@@ -93,27 +104,30 @@ impl<P: Protocol> Air<P> {
             payload_bytes,
             message,
         });
-        let Self {
-            medium,
-            inboxes,
-            listeners,
-            reached,
-            tell_reached,
-            ..
-        } = self;
-        medium.transmit(now, sender, listeners.iter().copied(), |receiver, fate| match fate {
-            Fate::Arrives { at, displacement } => {
-                inboxes[receiver.index()].push(Reception {
+        let Self { medium, arrivals, .. } = self;
+        medium.transmit(
+            now,
+            sender,
+            self.listeners.iter().copied(),
+            |receiver, fate| match fate {
+                Fate::Arrives { at, displacement } => arrivals.push(Arrival {
+                    receiver,
                     at,
-                    frame: Rc::clone(&frame),
                     displacement,
-                });
-                if *tell_reached {
-                    reached.push(receiver);
-                }
+                }),
+                Fate::Lost(cause) => recorder.lost(receiver, topic, cause, payload_bytes),
+            },
+        );
+        for arrival in self.arrivals.drain(..) {
+            if self.tell_reached {
+                self.reached.push(arrival.receiver);
             }
-            Fate::Lost(cause) => recorder.lost(receiver, topic, cause, payload_bytes),
-        });
+            self.inboxes[arrival.receiver.index()].push(Reception {
+                at: arrival.at,
+                frame: Rc::clone(&frame),
+                displacement: arrival.displacement,
+            });
+        }
         Ok(())
     }
 

@@ -9,6 +9,8 @@ pub struct WakeClock {
     control_step: SimTime,
     timers: Vec<(TimerId, SimTime)>,
     arrival: SimTime,
+    /// Number of the last batch of wakes that the robot was part of.
+    batch: u64,
 }
 
 impl WakeClock {
@@ -18,7 +20,13 @@ impl WakeClock {
             control_step: first_step,
             timers: Vec::new(),
             arrival: SimTime::NEVER,
+            batch: 0,
         }
+    }
+
+    /// Joins the batch of wakes number `batch`, from 1; says whether the robot was not part of it already.
+    pub fn join(&mut self, batch: u64) -> bool {
+        std::mem::replace(&mut self.batch, batch) != batch
     }
 
     /// The next instant at which the robot wakes.

@@ -25,9 +25,9 @@ pub enum RunError {
         /// The message's topic.
         topic: Topic,
     },
-    /// The operating system refused the actors what they need.
-    #[error("actors cannot be started: {0}")]
-    Actors(#[source] std::io::Error),
+    /// The operating system refused the robots' runtime what it needs.
+    #[error("the robots cannot be started: {0}")]
+    Runtime(#[source] std::io::Error),
     /// The run was told to stop.
     #[error("interrupted")]
     Interrupted,
@@ -87,6 +87,7 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     reached: Vec<ActorId>,
     positions: Vec<Vec2>,
     events: u64,
+    batches: u64,
     steps: u64,
 }
 
@@ -128,12 +129,13 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             reached: Vec::new(),
             positions: Vec::new(),
             events: 0,
+            batches: 0,
             steps: 0,
         }
     }
 
     /// Runs to the end and returns what it leaves behind.
-    pub fn to_end(mut self, trial: u32, seed: u64, stop: &CancellationToken) -> Result<TrialRecord, RunError> {
+    pub async fn to_end(mut self, trial: u32, seed: u64, stop: &CancellationToken) -> Result<TrialRecord, RunError> {
         let mut end = self.rhythm.time_limit;
         while let Some((event, now)) = self.queue.peek() {
             if now > self.rhythm.time_limit {
@@ -148,7 +150,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                     self.world.advance();
                     self.queue.schedule(event, now + self.world.tick());
                 }
-                Event::Wake(_) => self.wake_all(now)?,
+                Event::Wake(_) => self.wake_all(now).await?,
                 Event::Sample => {
                     self.locate(now);
                     self.recorder.sample(now, &self.positions);
@@ -169,18 +171,19 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         Ok(self.finish(trial, seed, end))
     }
 
-    /// Wakes every robot that is due at `now`.
-    fn wake_all(&mut self, now: SimTime) -> Result<(), RunError> {
-        while let Some((Event::Wake(robot), due)) = self.queue.peek() {
-            if due > now {
+    /// Wakes every robot that is due at `now`, once. One that is due twice stays in the queue for the next batch.
+    async fn wake_all(&mut self, now: SimTime) -> Result<(), RunError> {
+        self.batches += 1;
+        while let Some((event @ Event::Wake(robot), due)) = self.queue.peek() {
+            if due > now || !self.clocks[robot.index()].join(self.batches) {
                 break;
             }
-            self.queue.pop();
             let job = self.prepare(now, robot);
             self.batch.push(job);
+            self.queue.schedule(event, self.clocks[robot.index()].next());
         }
         self.events += self.batch.len() as u64 - 1;
-        self.driver.dispatch(&mut self.batch);
+        self.driver.dispatch(&mut self.batch).await;
         let mut batch = std::mem::take(&mut self.batch);
         for mut job in batch.drain(..) {
             self.apply(&mut job)?;
@@ -226,6 +229,9 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             self.world.proximity(robot, now, &mut input.proximity);
         }
         self.air.deliver(now, robot, &mut input.inbox, &mut self.recorder);
+        if self.rhythm.wake_on_reception {
+            self.clocks[index].set_arrival(self.air.next_arrival(robot));
+        }
         job.output.clear();
         job
     }
@@ -251,14 +257,13 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             self.air
                 .broadcast(now, robot, messages, &self.world, &mut self.recorder, &mut self.digest)?;
         }
-        let clock = &mut self.clocks[robot.index()];
-        for (id, due) in output.timers.drain(..) {
-            clock.set_timer(id, due, now);
+        if !output.timers.is_empty() {
+            let clock = &mut self.clocks[robot.index()];
+            for (id, due) in output.timers.drain(..) {
+                clock.set_timer(id, due, now);
+            }
+            self.queue.schedule(Event::Wake(robot), clock.next());
         }
-        if self.rhythm.wake_on_reception {
-            clock.set_arrival(self.air.next_arrival(robot));
-        }
-        self.queue.schedule(Event::Wake(robot), clock.next());
         Ok(())
     }
 

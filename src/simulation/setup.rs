@@ -7,7 +7,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::air::Air;
 use super::run::{Rhythm, Run, RunError};
-use crate::engine::{Actors, Driver, Inline, Purpose, SimTime, Span, Streams};
+use crate::engine::{Actors, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
 use crate::geometry::Pose;
 use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
@@ -85,13 +85,16 @@ impl Setup {
     ) -> Result<TrialRecord, RunError> {
         assert_eq!(poses.len(), robots.len(), "every robot needs a pose");
         let robots = robots.into_iter().map(Robot).collect();
-        match driver {
-            DriverKind::Actors => self.run_with(poses, Actors::spawn(robots).map_err(RunError::Actors)?, stop),
-            DriverKind::Inline => self.run_with(poses, Inline::new(robots), stop),
-        }
+        let run = async {
+            match driver {
+                DriverKind::Actors => self.run_with(poses, Actors::spawn(robots), stop).await,
+                DriverKind::Inline => self.run_with(poses, Inline::new(robots), stop).await,
+            }
+        };
+        block_on(run).map_err(RunError::Runtime)?
     }
 
-    fn run_with<P: Protocol, D: Driver<Robot<P>>>(
+    async fn run_with<P: Protocol, D: Driver<Robot<P>>>(
         &self,
         poses: Vec<Pose>,
         driver: D,
@@ -108,7 +111,8 @@ impl Setup {
             rhythm.wake_on_reception,
         );
         let recorder = Recorder::new(self.layout::<P>(robots), &self.metrics);
-        Run::new(rhythm, driver, world, air, recorder, &streams, &first_steps).to_end(self.trial, self.seed, stop)
+        let run = Run::new(rhythm, driver, world, air, recorder, &streams, &first_steps);
+        run.to_end(self.trial, self.seed, stop).await
     }
 
     fn rhythm(&self) -> Rhythm {

@@ -68,6 +68,8 @@ pub struct ControlLawConfig {
     pub lane_spacing: NonNegative,
     /// Gain that draws a networker into its chain's lane, 1/s.
     pub lane_gain: NonNegative,
+    /// Most that a lane pulls, m/s: enough to bring a networker past one of another chain that stands in its way.
+    pub lane_limit: NonNegative,
     /// Speed, m/s, of one unit of the Lennard-Jones potential.
     pub lj_speed: NonNegative,
     /// Distance from edge to body, metres, within which free robots avoid it.
@@ -91,6 +93,7 @@ impl Default for ControlLawConfig {
             push_limit: NonNegative::new(0.05),
             lane_spacing: NonNegative::new(0.35),
             lane_gain: NonNegative::new(0.8),
+            lane_limit: NonNegative::new(0.3),
             lj_speed: NonNegative::new(0.001),
             avoidance_range: NonNegative::new(0.2),
             backbone_avoidance_range: NonNegative::new(0.1),

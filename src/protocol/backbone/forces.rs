@@ -55,14 +55,11 @@ pub fn obstacle(desired: Vec2, bodies: &[Vec2], range: f64, gain: f64) -> Vec2 {
     })
 }
 
-/// The pull of a chain's lane (ours): across the chain, towards the line `lane` metres to the left of the way from the
-/// root to the target, by `limit` at most. `place` is relative to the root, `forward` the way to the target. The lanes
-/// part gradually over the first `rest` metres.
+/// The pull of a chain's lane (ours): across the chain, whose left is the unit vector `left`, over the signed distance
+/// `offset` to the lane, metres to the left; by `limit` at most.
 #[must_use]
-pub fn lane_pull(place: Vec2, forward: Vec2, lane: f64, rest: f64, gain: f64, limit: f64) -> Vec2 {
-    let left = Vec2::new(-forward.y, forward.x);
-    let parted = (place.dot(&forward) / rest).clamp(0.0, 1.0);
-    left * (gain * (lane * parted - place.dot(&left))).clamp(-limit, limit)
+pub fn lane_pull(offset: f64, left: Vec2, gain: f64, limit: f64) -> Vec2 {
+    left * (gain * offset).clamp(-limit, limit)
 }
 
 /// Shortens `velocity` by `rest_speed`, to zero if it is no faster: small commands fade out, and robots stand still.
@@ -143,14 +140,10 @@ mod tests {
     }
 
     #[test]
-    fn a_lane_pulls_across_the_chain_only() {
-        let forward = Vec2::new(0.0, 1.0);
-        // The left of the way north is west.
-        let pull = |x, y| lane_pull(Vec2::new(x, y), forward, 0.2, 1.4, 0.5, 0.05);
-        assert!(close(pull(-0.2, 2.0), Vec2::zeros()));
-        assert!(close(pull(-0.18, 2.0), Vec2::new(-0.01, 0.0)));
-        assert!(close(pull(1.0, 2.0), Vec2::new(-0.05, 0.0)));
-        assert!(close(pull(-0.1, 0.7), Vec2::zeros()));
+    fn a_lane_pulls_across_the_chain_in_proportion_up_to_its_limit() {
+        let west = Vec2::new(-1.0, 0.0);
+        assert!(close(lane_pull(0.02, west, 0.5, 0.05), Vec2::new(-0.01, 0.0)));
+        assert!(close(lane_pull(-2.0, west, 0.5, 0.05), Vec2::new(0.05, 0.0)));
     }
 
     #[test]

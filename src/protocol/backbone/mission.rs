@@ -48,6 +48,21 @@ pub struct Chain {
     pub lane: f64,
 }
 
+impl Chain {
+    /// How far to the left of the straight line the chain runs at `ahead` metres from the root: lanes part gradually over
+    /// the first spring's length.
+    #[must_use]
+    pub fn lane_at(&self, ahead: f64) -> f64 {
+        self.lane * (ahead / self.rest).clamp(0.0, 1.0)
+    }
+
+    /// The left of the way from the root to the target, a unit vector.
+    #[must_use]
+    pub fn left(&self) -> Vec2 {
+        Vec2::new(-self.forward.y, self.forward.x)
+    }
+}
+
 /// Settings in metres, m/s, 1/s and whole control steps. See [`BackboneConfig`] for what they mean.
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
@@ -60,6 +75,7 @@ pub struct Parameters {
     pub target_gain: f64,
     pub push_limit: f64,
     pub lane_gain: f64,
+    pub lane_limit: f64,
     pub lj_gain: f64,
     pub lj_delta: f64,
     pub avoidance_range: f64,
@@ -137,22 +153,29 @@ impl Mission {
     }
 }
 
+/// The shortest springs, in safe distances: robots have bodies, even where a target is next to the root.
+const SHORTEST_SPRING: f64 = 0.25;
+
 /// The `links` chains to target number `target`, which lies at `displacement` from the root.
 fn parallel_chains(config: &BackboneConfig, target: u8, displacement: Vec2, links: u8) -> impl Iterator<Item = Chain> {
     let safe = config.safe_distance.get();
     let distance = displacement.norm();
-    let relays = relays_needed(distance, config.movement_threshold.get(), safe);
-    let even = distance / (relays + 1) as f64;
-    let rest = safe.min(config.motion.taut_ratio.get() * even);
+    let needed = relays_needed(distance, config.movement_threshold.get(), safe);
     let gaps = f64::from(links.saturating_sub(1));
     // However many the chains, the outermost stay within a spring's reach of each other.
     let spacing = config.motion.lane_spacing.get().min(safe / gaps.max(1.0));
-    (0..links).map(move |link| Chain {
-        target,
-        relays,
-        rest,
-        forward: direction(displacement),
-        lane: (f64::from(link) - gaps / 2.0) * spacing,
+    let taut = config.motion.taut_ratio.get();
+    (0..links).map(move |link| {
+        // Only one chain can be the worker's own link to the root: the others need a relay to be disjoint from it.
+        let relays = needed.max(usize::from(link > 0));
+        let even = distance / (relays + 1) as f64;
+        Chain {
+            target,
+            relays,
+            rest: (taut * even).clamp(SHORTEST_SPRING * safe, safe),
+            forward: direction(displacement),
+            lane: (f64::from(link) - gaps / 2.0) * spacing,
+        }
     })
 }
 
@@ -186,6 +209,7 @@ impl Parameters {
             target_gain: law.target_gain.get(),
             push_limit: law.push_limit.get(),
             lane_gain: law.lane_gain.get(),
+            lane_limit: law.lane_limit.get(),
             lj_gain: config.lj_epsilon.get() * law.lj_speed.get(),
             lj_delta: config.lj_delta.get(),
             avoidance_range: law.avoidance_range.get(),
@@ -207,6 +231,14 @@ impl Parameters {
             request_every,
             silence: Span::from_secs(silence.get()),
         }
+    }
+}
+
+impl Parameters {
+    /// The distance up to which the gate f is fully open, metres: beyond the safe distance, for a chain at rest is taut.
+    #[must_use]
+    pub fn gate_opening(&self) -> f64 {
+        f64::midpoint(self.safe, self.gate)
     }
 }
 
@@ -265,6 +297,15 @@ mod tests {
         let lanes: Vec<f64> = (4..7).map(|number| mission.chain(number).lane).collect();
         assert_eq!(lanes, [-0.35, 0.0, 0.35]);
         assert!(mission.has_chain(12) && !mission.has_chain(13) && !mission.has_chain(0));
+    }
+
+    #[test]
+    fn all_chains_but_one_to_a_near_target_have_a_relay_so_that_they_are_disjoint() {
+        let config: BackboneConfig = ron::from_str("(targets: Ring(count: 1, radius: 1.2, links: 3))").unwrap();
+        let relays: Vec<usize> = parallel_chains(&config, 0, Vec2::new(1.2, 0.0), 3)
+            .map(|chain| chain.relays)
+            .collect();
+        assert_eq!(relays, [0, 1, 1]);
     }
 
     #[test]

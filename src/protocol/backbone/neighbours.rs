@@ -4,6 +4,7 @@ use crate::engine::{ActorId, SimTime};
 use crate::geometry::Vec2;
 
 use super::message::Status;
+use crate::protocol::row_index::RowIndex;
 
 /// A robot that was heard of late.
 #[derive(Clone, Copy, Debug)]
@@ -22,22 +23,20 @@ pub struct Neighbour {
 
 /// The neighbour table.
 ///
-/// Rows lie together in the order in which robots were first heard, and an index by id leads to them: two bytes for
-/// each id up to the highest one heard.
+/// Rows lie together in the order in which robots were first heard, and an index by id leads to them.
 #[derive(Debug, Default)]
 pub struct Neighbours {
     rows: Vec<Neighbour>,
-    /// Row number + 1 by id, 0 for none.
-    index: Vec<u16>,
+    index: RowIndex,
 }
 
 impl Neighbours {
     /// Takes in a status that `id` sent as its frame number `sequence`, from `position`, and that arrived at `heard`.
     /// One that was overtaken by a newer one counts as a sign of life and says nothing else.
     pub fn hear(&mut self, id: ActorId, sequence: u32, heard: SimTime, position: Vec2, status: Status) {
-        let row = self.index.get(id.index()).copied().unwrap_or(0);
-        if row == 0 {
-            self.insert(Neighbour {
+        let Some(row) = self.index.get(id) else {
+            self.index.set(id, self.rows.len());
+            self.rows.push(Neighbour {
                 id,
                 sequence,
                 heard,
@@ -45,8 +44,8 @@ impl Neighbours {
                 status,
             });
             return;
-        }
-        let known = &mut self.rows[usize::from(row) - 1];
+        };
+        let known = &mut self.rows[row];
         known.heard = heard;
         if sequence.wrapping_sub(known.sequence).cast_signed() > 0 {
             known.sequence = sequence;
@@ -55,20 +54,10 @@ impl Neighbours {
         }
     }
 
-    fn insert(&mut self, neighbour: Neighbour) {
-        let place = neighbour.id.index();
-        if place >= self.index.len() {
-            self.index.resize(place + 1, 0);
-        }
-        self.rows.push(neighbour);
-        self.index[place] = self.rows.len() as u16;
-    }
-
     /// What is known of `id`, if it was heard of late.
     #[must_use]
     pub fn get(&self, id: ActorId) -> Option<&Neighbour> {
-        let row = *self.index.get(id.index())?;
-        self.rows.get(usize::from(row).checked_sub(1)?)
+        self.index.get(id).map(|row| &self.rows[row])
     }
 
     /// All of them, in an order that depends on what was heard and on nothing else.
@@ -85,9 +74,9 @@ impl Neighbours {
                 continue;
             }
             let gone = self.rows.swap_remove(row);
-            self.index[gone.id.index()] = 0;
+            self.index.remove(gone.id);
             if let Some(moved) = self.rows.get(row) {
-                self.index[moved.id.index()] = row as u16 + 1;
+                self.index.set(moved.id, row);
             }
         }
     }

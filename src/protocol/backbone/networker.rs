@@ -113,7 +113,7 @@ impl Networker {
             && self.need(view)
             && self.outer.len() < chain.relays
             && view.expands(self.slot.chain)
-            && view.way_to_root().norm() >= view.parameters().recruit_ratio * chain.rest
+            && self.slot.is_out_enough(view)
     }
 
     /// Heads for its place beside its child.
@@ -122,8 +122,7 @@ impl Networker {
         let Some(child) = view.neighbours.get(self.child) else {
             return Vec2::zeros();
         };
-        let rest = view.mission.chain(self.slot.chain).rest;
-        let place = joining_place(view.mission.origin, child.position, rest);
+        let place = joining_place(view.mission.origin, child.position, view.mission.chain(self.slot.chain));
         let desired = (place - view.position) * parameters.spring_gain;
         desired + self.avoidance(view, desired)
     }
@@ -142,7 +141,7 @@ impl Networker {
         let child = view.way_to(self.child);
         let desired = spring(parent) + child.map_or_else(Vec2::zeros, spring) + lane_pull(view, chain);
         let shorter = child.map_or(f64::INFINITY, |child| child.norm()).min(parent.norm());
-        let open = forces::gate(shorter, parameters.safe, parameters.gate);
+        let open = forces::gate(shorter, parameters.gate_opening(), parameters.gate);
         desired + self.avoidance(view, desired) * open
     }
 
@@ -193,12 +192,8 @@ const AT_HOME: f64 = 0.9;
 
 fn lane_pull(view: &View<'_>, chain: &Chain) -> Vec2 {
     let parameters = view.parameters();
-    forces::lane_pull(
-        -view.way_to_root(),
-        chain.forward,
-        chain.lane,
-        chain.rest,
-        parameters.lane_gain,
-        parameters.push_limit,
-    )
+    let place = -view.way_to_root();
+    let left = chain.left();
+    let offset = chain.lane_at(place.dot(&chain.forward)) - place.dot(&left);
+    forces::lane_pull(offset, left, parameters.lane_gain, parameters.lane_limit)
 }

@@ -10,12 +10,17 @@ use crate::engine::ActorId;
 use crate::geometry::{Vec2, direction};
 
 use super::message::{Message, Request, Role, Strand};
+use super::mission::Chain;
 use super::strand;
 use super::view::View;
 
 /// How far ahead of the root, towards its child, a joiner must be before it takes its place, as a share of its chain's
 /// spring length: from behind the root, springs would push it the wrong way.
 const AHEAD: f64 = 0.15;
+
+/// How far behind its child a joiner goes, as a share of its chain's spring length: less than all of it, for the child
+/// moves on, and a joiner that is farther out has less of the cluster to get through.
+const BEHIND: f64 = 0.5;
 
 /// A robot's place for one parent. A worker has one a link, a networker has one.
 #[derive(Debug)]
@@ -93,13 +98,19 @@ impl Slot {
         self.parent == view.mission.root
     }
 
+    /// Whether the robot is far enough from the root for a relay between the two.
+    #[must_use]
+    pub fn is_out_enough(&self, view: &View<'_>) -> bool {
+        view.way_to_root().norm() >= view.parameters().recruit_ratio * view.mission.chain(self.chain).rest
+    }
+
     /// Does what a control step asks for: drops what is over, swaps in a joiner that is in place, and recruits where one
     /// is `wanted`.
     pub fn tend(&mut self, view: &View<'_>, wanted: bool, recruiter: &mut Recruiter, out: &mut Vec<Message>) {
         self.give_up_a_lost_parent(view);
         self.settle_invitation(view, wanted);
         if wanted && self.invitation.is_none() {
-            let place = joining_place(view.mission.origin, view.position, view.mission.chain(self.chain).rest);
+            let place = joining_place(view.mission.origin, view.position, view.mission.chain(self.chain));
             self.invitation = recruiter
                 .candidate(view, place)
                 .map(|candidate| recruiter.invite(view, candidate));
@@ -201,11 +212,11 @@ impl Slot {
     }
 }
 
-/// Where a joiner goes: on the way from the root at `origin` to its child at `child`, a spring's length before it, but
-/// well ahead of the root.
+/// Where a joiner of `chain` goes: on the way from the root at `origin` to its child at `child`, well ahead of the root,
+/// and over to its chain's lane, so that chains need not cross.
 #[must_use]
-pub fn joining_place(origin: Vec2, child: Vec2, rest: f64) -> Vec2 {
+pub fn joining_place(origin: Vec2, child: Vec2, chain: &Chain) -> Vec2 {
     let way = child - origin;
-    let ahead = (way.norm() - rest).max(2.0 * AHEAD * rest).min(rest);
-    origin + direction(way) * ahead
+    let ahead = (way.norm() - BEHIND * chain.rest).clamp(2.0 * AHEAD * chain.rest, chain.rest);
+    origin + direction(way) * ahead + chain.left() * chain.lane_at(ahead)
 }

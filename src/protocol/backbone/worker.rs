@@ -37,10 +37,11 @@ impl Worker {
         self.slots.first().map_or(0, |slot| slot.chain)
     }
 
-    /// Whether its chains must still grow: it is sent out and its target not reached.
+    /// Parent need: whether it is sent out and its target not reached, or a link not by a chain of its own yet.
     #[must_use]
     pub fn need(&self, view: &View<'_>) -> bool {
-        view.order.expands(self.target) && self.way_to_target(view).norm() > view.parameters().threshold
+        let on_the_way = self.way_to_target(view).norm() > view.parameters().threshold;
+        view.order.expands(self.target) && (on_the_way || self.slots.iter().any(|slot| lacks_relay(slot, view)))
     }
 
     fn way_to_target(&self, view: &View<'_>) -> Vec2 {
@@ -50,13 +51,8 @@ impl Worker {
     /// One control step: recruits where a link needs it, and answers with the velocity that it wants.
     pub fn control(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) -> Vec2 {
         let need = self.need(view);
-        let out_of_reach = view.way_to_root().norm();
         for slot in &mut self.slots {
-            let chain = view.mission.chain(slot.chain);
-            let wanted = need
-                && slot.is_at_root(view)
-                && chain.relays > 0
-                && out_of_reach >= view.parameters().recruit_ratio * chain.rest;
+            let wanted = need && lacks_relay(slot, view) && slot.is_out_enough(view);
             slot.tend(view, wanted, recruiter, out);
         }
         if view.order.expands(self.target) {
@@ -73,9 +69,7 @@ impl Worker {
         if pull.farthest >= parameters.critical {
             return pull.leash;
         }
-        // The gate opens a safe distance's slack before it closes: at rest under tension it must be open.
-        let opening = f64::midpoint(parameters.safe, parameters.gate);
-        let open = forces::gate(pull.farthest, opening, parameters.gate);
+        let open = forces::gate(pull.farthest, parameters.gate_opening(), parameters.gate);
         let to_target = forces::target(self.way_to_target(view), parameters.target_gain);
         let desired = pull.springs + to_target * open;
         desired + avoidance(view, desired, parameters) * open
@@ -126,6 +120,11 @@ impl Worker {
             })
         }));
     }
+}
+
+/// Whether `slot` still leads to the root itself and should lead to a relay.
+fn lacks_relay(slot: &Slot, view: &View<'_>) -> bool {
+    slot.is_at_root(view) && view.mission.chain(slot.chain).relays > 0
 }
 
 /// What a worker's parents do to it.

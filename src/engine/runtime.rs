@@ -1,0 +1,17 @@
+//! Where a run's future and its actors' tasks live: one thread, no clock.
+
+use std::future::Future;
+use std::io;
+
+use tokio::runtime::{Builder, LocalOptions};
+
+/// Runs `future`, and the actors that it spawns, on this thread to its end.
+///
+/// The runtime has neither timers nor input and output: simulated time is the scheduler's.
+///
+/// # Errors
+/// If the operating system refuses the runtime what it needs.
+pub fn block_on<F: Future>(future: F) -> io::Result<F::Output> {
+    let runtime = Builder::new_current_thread().build_local(LocalOptions::default())?;
+    Ok(runtime.block_on(future))
+}
