@@ -6,7 +6,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::experiment::FinishedTrial;
 
-const LAYOUT: &str = "{bar:24.green/dim} {pos}/{len} trials, {msg}{elapsed} gone, {eta} left";
+/// Until a trial has finished, nobody knows how long they take.
+const AT_FIRST: &str = "{bar:24.green/dim} {pos}/{len} trials, {elapsed} gone";
+const LATER: &str = "{bar:24.green/dim} {pos}/{len} trials, {elapsed} gone, {eta} left, {msg} simulated s per s";
 
 /// A bar on stderr, where that is a terminal; nothing elsewhere.
 pub struct Progress {
@@ -19,7 +21,7 @@ impl Progress {
     /// Starts at `finished` of `trials`.
     ///
     /// # Panics
-    /// Never: the layout is one that indicatif reads.
+    /// Never: the layouts are well formed.
     #[must_use]
     pub fn start(trials: u32, finished: u32, quiet: bool) -> Self {
         let target = if quiet {
@@ -28,7 +30,7 @@ impl Progress {
             ProgressDrawTarget::stderr()
         };
         let bar = ProgressBar::with_draw_target(Some(trials.into()), target);
-        bar.set_style(ProgressStyle::with_template(LAYOUT).expect("the layout is well formed"));
+        bar.set_style(layout(AT_FIRST));
         bar.set_position(finished.into());
         bar.reset_eta();
         bar.enable_steady_tick(Duration::from_millis(200));
@@ -43,9 +45,14 @@ impl Progress {
     pub fn count(&mut self, part: &FinishedTrial) {
         self.simulated_s += part.record.simulated.as_secs();
         let rate = self.simulated_s / self.start.elapsed().as_secs_f64();
-        self.bar.set_message(format!("{rate:.0} simulated s per s, "));
+        self.bar.set_message(format!("{rate:.0}"));
+        self.bar.set_style(layout(LATER));
         self.bar.inc(1);
     }
+}
+
+fn layout(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the layouts are well formed")
 }
 
 impl Drop for Progress {

@@ -140,11 +140,8 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
     } = &bandwidth.total;
     page.entry("mean", &format!("sent {}, received {}", mean(sent), mean(received)));
     let load = &summary.load_imbalance;
-    let load = format!(
-        "sent {}, received {}",
-        estimate(&load.tx, figure),
-        estimate(&load.rx, figure)
-    );
+    let gini = |load| estimate(load, |gini| format!("{gini:.3}"));
+    let load = format!("sent {}, received {}", gini(&load.tx), gini(&load.rx));
     page.entry("Gini of load", &format!("{load}; 0 where all carry the same"));
 }
 

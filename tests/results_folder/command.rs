@@ -207,7 +207,7 @@ fn a_reader_that_leaves_early_is_no_fault() {
 #[test]
 fn a_terminated_run_keeps_its_trials_and_goes_on() {
     let dir = place();
-    let long = [
+    let arguments = [
         "scenario",
         "small.ron",
         "--set",
@@ -219,7 +219,7 @@ fn a_terminated_run_keeps_its_trials_and_goes_on() {
         "--quiet",
     ];
     let mut child = Process::new(env!("CARGO_BIN_EXE_desim"))
-        .args(long)
+        .args(arguments)
         .env("DESIM_LOG", "info")
         .current_dir(dir.path())
         .stderr(Stdio::piped())
@@ -227,20 +227,20 @@ fn a_terminated_run_keeps_its_trials_and_goes_on() {
         .unwrap();
     let mut log = BufReader::new(child.stderr.take().unwrap());
     log.read_line(&mut String::new()).unwrap();
-    let killed = Process::new("kill")
+    let signal = Process::new("kill")
         .args(["-TERM", &child.id().to_string()])
         .status()
         .unwrap();
-    assert!(killed.success());
-    let mut rest = String::new();
-    log.read_to_string(&mut rest).unwrap();
+    assert!(signal.success());
+    let mut last_words = String::new();
+    log.read_to_string(&mut last_words).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert!(rest.contains("of 40 trials are kept in results/small"), "{rest}");
+    assert!(last_words.contains("of 40 trials are kept in results/small"), "{last_words}");
 
     let kept = || fs::read_dir(dir.path().join("results/small/.trials")).unwrap().count();
     assert!(kept() > 1);
-    let resumed = desim(dir.path(), &long)
-        .timeout(Duration::from_secs(300))
+    let resumed = desim(dir.path(), &arguments)
+        .timeout(Duration::from_mins(5))
         .assert()
         .success();
     assert_eq!(text(&resumed.get_output().stdout), "");

@@ -108,7 +108,7 @@ fn a_kept_trial_comes_back_bit_for_bit() {
     record.seed = u64::MAX;
     record.connectivity[0].lambda2 = 0.1 + 0.2;
     record.connectivity[1].lambda2 = f64::MIN_POSITIVE / 8.0;
-    record.connectivity[2].lambda2 = 2.2250738585072011e-308;
+    record.connectivity[2].lambda2 = f64::MIN_POSITIVE.next_down();
     record.trajectories[0].1[0] = [f32::MIN_POSITIVE / 8.0, 16_777_217.0_f32.sqrt()];
     record.robots[0].pose.heading = -0.0;
     let part = FinishedTrial {
@@ -232,7 +232,7 @@ fn tables_read_back_as_they_were_recorded() {
         .find(|row| column(row, "direction") == Field::Str("lost_channel".into()));
     assert_eq!(
         column(first_lost.unwrap(), "frames"),
-        Field::Long(expected[2].lost[0].frames as i64)
+        Field::Long(expected[2].lost[0].frames.cast_signed())
     );
     assert_eq!(rows(dir.path(), "frames.parquet").len(), 4 * TRIALS as usize);
     assert_eq!(
