@@ -1,4 +1,70 @@
-//! desim: an actor-based discrete-event network simulator for robot swarms.
+//! desim runs a robot swarm's own protocol over a radio that loses and delays frames, while the robots move, and says
+//! what that cost and how sure it is.
+//!
+//! Most people need only the command and a scenario file; the README is theirs. This page is for those who bring a
+//! protocol of their own, or who want a run inside a program of theirs.
+//!
+//! # Author: a robot is a state machine
+//!
+//! Implement [`protocol::Protocol`]. A robot never looks at a clock, a socket or another robot: when it wakes it is
+//! handed the time and an [`Input`](protocol::Input) (what reached it, where it is, what is near, randomness of its
+//! own), and fills an [`Output`](protocol::Output) (messages, a velocity, timers, notes for the metrics). What it says is
+//! really encoded: its codec makes the bytes that are accounted, and other robots see what decodes.
+//!
+//! # Assemble and run
+//!
+//! [`simulation::Setup`] is the world: arena, motion, radio, what is measured. Here two robots of the shipped
+//! [`heartbeat`](protocol::heartbeat) protocol stand a metre apart on a radio that loses half of what is said:
+//!
+//! ```
+//! use std::rc::Rc;
+//!
+//! use desim::engine::Span;
+//! use desim::geometry::{Pose, Vec2};
+//! use desim::protocol::heartbeat::{Heartbeat, Settings};
+//! use desim::quantity::Probability;
+//! use desim::radio::LossConfig;
+//! use desim::simulation::{DriverKind, Setup};
+//!
+//! let mut setup = Setup::lasting(Span::from_secs(60.0));
+//! setup.radio.loss = LossConfig::Bernoulli(Probability::new(0.5));
+//!
+//! let places = [Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0)];
+//! let poses = places.map(|position| Pose { position, heading: 0.0 }).to_vec();
+//! let settings = Rc::new(Settings::new(&Default::default(), &Default::default(), Span::from_secs(0.1)));
+//! let robots = vec![Heartbeat::new(settings.clone()), Heartbeat::new(settings)];
+//!
+//! let record = setup.run(poses, robots, DriverKind::Actors, &Default::default())?;
+//!
+//! // 601 control steps from 0 to 60 s, two robots, one listener each.
+//! let status = &record.ledger[0];
+//! assert_eq!(status.offered, 1202);
+//! assert_eq!(status.offered, status.delivered + status.lost[0] + status.in_flight);
+//! # Ok::<(), desim::simulation::RunError>(())
+//! ```
+//!
+//! The [`TrialRecord`](metrics::TrialRecord) holds what the run left behind: fates, traffic by robot, role and topic,
+//! latencies, connectivity over time, where everybody ended. [`metrics::Summary`] makes figures with intervals of many.
+//!
+//! # What happens in which order
+//!
+//! - Time is whole nanoseconds. At one instant: the motion tick, then robot wakes, then samples.
+//! - Robots that wake at one instant all see the world as it was before any of them acted. Their answers take effect in
+//!   the order of their wakes, which is first-in-first-out.
+//! - A robot that wakes at t has in its inbox what arrived up to and including t, by time of arrival.
+//! - A timer wakes its robot at its exact time, between control steps too, and before a control step at the same instant.
+//! - A frame waits in its receiver's inbox and wakes nobody, unless the scenario says `wake: OnReception`.
+//!
+//! # What makes two runs the same
+//!
+//! The scenario, the seed and the version; not the driver, the number of threads or the build profile. Every random draw
+//! is keyed by what it is for ([`engine::Streams`]), so no draw depends on how many came before it.
+//!
+//! # The floors
+//!
+//! [`engine`], [`geometry`] and [`quantity`] know no robots; [`radio`], [`motion`] and [`protocol`] are pure models that do
+//! not know each other; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
+//! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
 
 pub mod cli;
 pub mod engine;

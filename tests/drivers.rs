@@ -43,7 +43,10 @@ fn robots_at_random_phases_are_the_same_run_under_both_drivers() {
 
 #[test]
 fn robots_woken_by_each_reception_are_the_same_run_under_both_drivers() {
-    assert_same_under_both_drivers(&scenario("loss20.ron", &["time_limit=5.0", "metrics.hold=1.0", "control.wake=OnReception"]));
+    assert_same_under_both_drivers(&scenario(
+        "loss20.ron",
+        &["time_limit=5.0", "metrics.hold=1.0", "control.wake=OnReception"],
+    ));
 }
 
 #[test]

@@ -41,7 +41,7 @@ pub struct ScenarioArguments {
     /// Trials that run at a time [default: one for each processor]; results do not depend on it
     #[arg(long, value_name = "J")]
     pub jobs: Option<NonZeroUsize>,
-    /// Folder for the results [default: results/<name of the scenario>]
+    /// Folder for the results [default: results/NAME, the scenario's name]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Set a value of the scenario, such as `radio.loss=Bernoulli(0.3)`; may be given many times

@@ -235,7 +235,10 @@ fn a_terminated_run_keeps_its_trials_and_goes_on() {
     let mut last_words = String::new();
     log.read_to_string(&mut last_words).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
-    assert!(last_words.contains("of 40 trials are kept in results/small"), "{last_words}");
+    assert!(
+        last_words.contains("of 40 trials are kept in results/small"),
+        "{last_words}"
+    );
 
     let kept = || fs::read_dir(dir.path().join("results/small/.trials")).unwrap().count();
     assert!(kept() > 1);

@@ -4,7 +4,9 @@ use std::time::{Duration, Instant};
 
 use desim::scenario::{Override, Report, Scenario, parse, to_ron};
 
+mod command;
 mod mutations;
+#[path = "../shipped/mod.rs"]
 mod shipped;
 
 const MUTANTS: u32 = 300;
