@@ -5,9 +5,6 @@ use std::io;
 
 use tokio::runtime::{Builder, LocalOptions};
 
-/// Nothing outside this thread ever wakes a task, so looking out for it can wait.
-const POLLS_BETWEEN_EVENTS: u32 = 1 << 16;
-
 /// Runs `future`, and the actors that it spawns, on this thread to its end.
 ///
 /// The runtime has neither timers nor input and output: simulated time is the scheduler's.
@@ -15,9 +12,6 @@ const POLLS_BETWEEN_EVENTS: u32 = 1 << 16;
 /// # Errors
 /// If the operating system refuses the runtime what it needs.
 pub fn block_on<F: Future>(future: F) -> io::Result<F::Output> {
-    let runtime = Builder::new_current_thread()
-        .event_interval(POLLS_BETWEEN_EVENTS)
-        .global_queue_interval(POLLS_BETWEEN_EVENTS)
-        .build_local(LocalOptions::default())?;
+    let runtime = Builder::new_current_thread().build_local(LocalOptions::default())?;
     Ok(runtime.block_on(future))
 }

@@ -6,8 +6,8 @@ use bytes::BytesMut;
 use tokio_util::codec::{Decoder, Encoder};
 
 use super::digest::Digest;
+use super::error::RunError;
 use super::inbox::Inbox;
-use super::run::RunError;
 use crate::engine::{ActorId, SimTime};
 use crate::metrics::Recorder;
 use crate::motion::World;

@@ -4,18 +4,17 @@
 //! one instant see the world as it was before any of them acted; their answers are then applied in the order of waking.
 //!
 //! A frame does not travel through the event queue. When a robot sends, the medium decides the fate of every copy at
-//! once, and each copy waits in its receiver's inbox until the receiver wakes (see [`ARCHITECTURE`]).
-//!
-//! [`ARCHITECTURE`]: https://docs.rs/desim-swarm
+//! once, and each copy waits in its receiver's inbox until the receiver wakes.
 
 mod air;
 mod clock;
 mod digest;
+mod error;
 mod inbox;
 mod run;
 mod setup;
 mod trial;
 
-pub use run::RunError;
+pub use error::RunError;
 pub use setup::{DriverKind, Setup};
 pub use trial::{TrialError, run_trial};

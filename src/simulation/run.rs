@@ -5,33 +5,14 @@ use tokio_util::sync::CancellationToken;
 use super::air::Air;
 use super::clock::WakeClock;
 use super::digest::Digest;
+use super::error::RunError;
 use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams};
 use crate::geometry::Vec2;
 use crate::metrics::{Progress, Recorder, RunEnd, TrialRecord};
 use crate::motion::World;
-use crate::protocol::{CodecError, Input, Output, Protocol, Robot, Topic, Wake};
+use crate::protocol::{Input, Output, Protocol, Robot, Wake};
 
 const ROBOT: Purpose = Purpose::new("protocol.robot");
-
-/// Why a run stopped before its end.
-#[derive(Debug, thiserror::Error)]
-pub enum RunError {
-    /// A robot's message could not be encoded, or its bytes not be decoded.
-    #[error("a message cannot cross the air: {0}")]
-    Codec(#[from] CodecError),
-    /// The codec made bytes that it does not read as a whole message.
-    #[error("the codec's own bytes on topic {} are not a whole message to its decoder", topic.0)]
-    Undecodable {
-        /// The message's topic.
-        topic: Topic,
-    },
-    /// The operating system refused the robots' runtime what it needs.
-    #[error("the robots cannot be started: {0}")]
-    Runtime(#[source] std::io::Error),
-    /// The run was told to stop.
-    #[error("interrupted")]
-    Interrupted,
-}
 
 /// What can happen. Frames are not events: they wait in inboxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -6,7 +6,8 @@ use rand::RngExt as _;
 use tokio_util::sync::CancellationToken;
 
 use super::air::Air;
-use super::run::{Rhythm, Run, RunError};
+use super::error::RunError;
+use super::run::{Rhythm, Run};
 use crate::engine::{Actors, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
 use crate::geometry::Pose;
 use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};

@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use tokio_util::sync::CancellationToken;
 
-use super::run::RunError;
+use super::error::RunError;
 use super::setup::{DriverKind, Setup};
 use crate::engine::{ActorId, Span};
 use crate::metrics::{Mission, MissionTarget, TrialRecord};
