@@ -3,7 +3,8 @@
 //! | message | bytes |
 //! |---|---|
 //! | status | role, previous role, parent need, target chain |
-//! | join | kind, to, sequence, chain |
+//! | join, adopt | kind, to, sequence, chain |
+//! | work | kind, to, sequence, target |
 //! | accept, refuse | kind, to, sequence |
 //! | release | kind, to |
 //! | order | kind, epoch, target + 1 or 0 for all |
@@ -25,6 +26,8 @@ const ACCEPT: u8 = 0x11;
 const REFUSE: u8 = 0x12;
 const RELEASE: u8 = 0x13;
 const ORDER: u8 = 0x14;
+const ADOPT: u8 = 0x15;
+const WORK: u8 = 0x16;
 const PARENT_STRAND: u8 = 0x20;
 const CHILD_STRAND: u8 = 0x21;
 const WIDE_IDS: u8 = 0x80;
@@ -61,6 +64,14 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
         Request::Join { to, sequence, chain } => {
             put_addressed(JOIN, to, bytes);
             bytes.put_slice(&[sequence, chain]);
+        }
+        Request::Adopt { to, sequence, chain } => {
+            put_addressed(ADOPT, to, bytes);
+            bytes.put_slice(&[sequence, chain]);
+        }
+        Request::Work { to, sequence, target } => {
+            put_addressed(WORK, to, bytes);
+            bytes.put_slice(&[sequence, target]);
         }
         Request::Accept { to, sequence } => {
             put_addressed(ACCEPT, to, bytes);
@@ -124,6 +135,16 @@ impl Decoder for BackboneCodec {
                 to: reader.id(wide)?,
                 sequence: reader.byte()?,
                 chain: reader.byte()?,
+            }),
+            ADOPT => Message::Request(Request::Adopt {
+                to: reader.id(wide)?,
+                sequence: reader.byte()?,
+                chain: reader.byte()?,
+            }),
+            WORK => Message::Request(Request::Work {
+                to: reader.id(wide)?,
+                sequence: reader.byte()?,
+                target: reader.byte()?,
             }),
             ACCEPT => Message::Request(Request::Accept {
                 to: reader.id(wide)?,
@@ -241,6 +262,8 @@ mod tests {
         });
         let request = prop_oneof![
             (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, chain)| Request::Join { to, sequence, chain }),
+            (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, chain)| Request::Adopt { to, sequence, chain }),
+            (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, target)| Request::Work { to, sequence, target }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
             id().prop_map(|to| Request::Release { to }),

@@ -67,6 +67,25 @@ pub enum Request {
         /// The chain to join.
         chain: u8,
     },
+    /// Asks a networker of the sender's chain that has lost its child to become the sender's parent: the two bridge a
+    /// failed robot.
+    Adopt {
+        /// The robot asked.
+        to: ActorId,
+        /// Number of this request among the sender's; repetitions have the same.
+        sequence: u8,
+        /// The chain of both.
+        chain: u8,
+    },
+    /// The root asks a free robot to become the worker of a target that has none left.
+    Work {
+        /// The robot asked.
+        to: ActorId,
+        /// Number of this request among the sender's; repetitions have the same.
+        sequence: u8,
+        /// The target, an index into the mission's.
+        target: u8,
+    },
     /// Yes to the request with this number.
     Accept {
         /// Who asked.

@@ -92,8 +92,10 @@ pub struct Parameters {
     pub status_every: u64,
     pub strand_every: u64,
     pub request_every: u64,
+    pub healing_patience: u64,
     /// Silence after which a neighbour is no longer counted on.
     pub silence: Span,
+    pub silence_steps: u64,
 }
 
 impl Mission {
@@ -229,7 +231,9 @@ impl Parameters {
             status_every: gossip.status.steps(control_period),
             strand_every,
             request_every,
+            healing_patience: steps(config.healing.patience.get()),
             silence: Span::from_secs(silence.get()),
+            silence_steps: steps(silence.get()),
         }
     }
 }

@@ -5,6 +5,8 @@ mod codec;
 mod config;
 mod forces;
 mod free;
+mod heal;
+mod isolated;
 mod message;
 mod mission;
 mod neighbours;
@@ -22,7 +24,9 @@ mod tests;
 use std::rc::Rc;
 
 pub use codec::BackboneCodec;
-pub use config::{BackboneConfig, ControlLawConfig, RecruitingConfig, ShortageConfig, TargetConfig, TargetsConfig};
+pub use config::{
+    BackboneConfig, ControlLawConfig, HealingConfig, RecruitingConfig, ShortageConfig, TargetConfig, TargetsConfig,
+};
 pub use message::{Message, Order, Request, Role, Status, Strand};
 
 use mission::{Mission, Parameters};
@@ -138,7 +142,7 @@ impl Backbone {
                 Duty::Networker(networker) => {
                     networker.hear_child_strand(frame.sender, strand, self.known.id, self.known.step);
                 }
-                Duty::Root(root) => root.hear_child_strand(strand, self.known.id),
+                Duty::Root(root) => root.hear_child_strand(strand, self.known.id, self.known.step),
                 Duty::Free | Duty::Worker(_) => {}
             },
             Message::Request(request) => self.hear_request(frame.sender, *request, out),
@@ -170,14 +174,21 @@ impl Backbone {
             Request::Join { to, sequence, chain } if to == self.known.id => {
                 out.push(Message::Request(self.answer(sender, sequence, chain)));
             }
-            Request::Accept { to, sequence } if to == self.known.id => {
-                let (slots, step) = (self.duty.slots_mut(), self.known.step);
-                let known = slots.iter_mut().any(|slot| slot.hear_accept(sender, sequence, step));
-                if !known {
-                    out.push(Message::Request(Request::Release { to: sender }));
-                }
+            Request::Adopt { to, sequence, chain } if to == self.known.id => {
+                let answer = match &mut self.duty {
+                    Duty::Networker(networker) => networker.hear_adopt(sender, sequence, chain, self.known.step),
+                    _ => Request::Refuse { to: sender, sequence },
+                };
+                out.push(Message::Request(answer));
             }
+            Request::Work { to, sequence, target } if to == self.known.id => {
+                out.push(Message::Request(self.answer_work(sender, sequence, target)));
+            }
+            Request::Accept { to, sequence } if to == self.known.id => self.hear_accept(sender, sequence, out),
             Request::Refuse { to, sequence } if to == self.known.id => {
+                if let Duty::Root(root) = &mut self.duty {
+                    root.hear_answer(sender, sequence, false, &self.known.mission, self.known.step);
+                }
                 for slot in self.duty.slots_mut() {
                     slot.hear_refuse(sender, sequence);
                 }
@@ -189,6 +200,32 @@ impl Backbone {
             }
             Request::Order(order) if order.is_newer_than(self.known.order) => self.known.order = order,
             _ => {}
+        }
+    }
+
+    fn hear_accept(&mut self, sender: ActorId, sequence: u8, out: &mut Vec<Message>) {
+        let step = self.known.step;
+        if let Duty::Root(root) = &mut self.duty {
+            root.hear_answer(sender, sequence, true, &self.known.mission, step);
+            return;
+        }
+        let slots = self.duty.slots_mut();
+        if !slots.iter_mut().any(|slot| slot.hear_accept(sender, sequence, step)) {
+            out.push(Message::Request(Request::Release { to: sender }));
+        }
+    }
+
+    /// The answer to the root's request to work: a free robot does.
+    fn answer_work(&mut self, sender: ActorId, sequence: u8, target: u8) -> Request {
+        let mission = &self.known.mission;
+        match &self.duty {
+            Duty::Worker(worker) if worker.target == target => Request::Accept { to: sender, sequence },
+            Duty::Free if usize::from(target) < mission.targets.len() => {
+                self.duty = Duty::Worker(Worker::new(target, mission));
+                self.previous = Role::Free;
+                Request::Accept { to: sender, sequence }
+            }
+            _ => Request::Refuse { to: sender, sequence },
         }
     }
 
@@ -215,9 +252,7 @@ impl Backbone {
         self.known
             .neighbours
             .forget_before(now - self.known.mission.parameters.silence);
-        if matches!(&self.duty, Duty::Networker(networker) if networker.is_done(&self.known.view(&input.proximity))) {
-            self.become_free();
-        }
+        self.change_duty(&input.proximity);
         let desired = self.act(&input.proximity, &mut output.broadcasts);
         let parameters = &self.known.mission.parameters;
         let desired = forces::settle(desired, parameters.rest_speed);
@@ -232,13 +267,52 @@ impl Backbone {
         self.gossip(&input.proximity, &mut output.broadcasts);
     }
 
+    /// Gives up a duty that is over, and takes over from a worker that is lost.
+    fn change_duty(&mut self, proximity: &[Vec2]) {
+        let view = self.known.view(proximity);
+        let is_isolated = view.is_isolated();
+        match &mut self.duty {
+            Duty::Networker(networker) => {
+                networker.watch_child(&view);
+                if networker.is_heir(&view) && !is_isolated {
+                    self.replace_duty(|duty, known| match duty {
+                        Duty::Networker(networker) => Duty::Worker(Worker::heir(networker.slot, &known.mission)),
+                        other => other,
+                    });
+                } else if networker.is_done(&view) || is_isolated {
+                    self.become_free();
+                }
+            }
+            Duty::Worker(worker) => {
+                if let Some(better) = worker.better(&view) {
+                    self.replace_duty(|duty, known| match duty {
+                        Duty::Worker(worker) => worker.into_slot(known.mission.root).map_or(Duty::Free, |slot| {
+                            Duty::Networker(Networker::stood_down(slot, better, known.step))
+                        }),
+                        other => other,
+                    });
+                } else if is_isolated {
+                    self.become_free();
+                }
+            }
+            Duty::Free | Duty::Root(_) => {}
+        }
+    }
+
+    fn replace_duty(&mut self, change: impl FnOnce(Duty, &Knowledge) -> Duty) {
+        self.previous = self.duty.role();
+        let old = std::mem::replace(&mut self.duty, Duty::Free);
+        self.duty = change(old, &self.known);
+    }
+
     /// Runs the routine of the robot's role; the velocity that it wants.
     fn act(&mut self, proximity: &[Vec2], out: &mut Vec<Message>) -> Vec2 {
         let view = self.known.view(proximity);
         match &mut self.duty {
+            Duty::Free if view.is_isolated() => isolated::velocity(&view),
             Duty::Free => free::velocity(&view),
             Duty::Root(root) => {
-                self.known.order = root.control(&view);
+                self.known.order = root.control(&view, &mut self.recruiter, out);
                 Vec2::zeros()
             }
             Duty::Networker(networker) => networker.control(&view, &mut self.recruiter, out),

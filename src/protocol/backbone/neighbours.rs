@@ -65,6 +65,12 @@ impl Neighbours {
         self.rows.iter()
     }
 
+    /// Whether nobody was heard of late.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
     /// Forgets those not heard since `then`.
     pub fn forget_before(&mut self, then: SimTime) {
         let mut row = 0;

@@ -4,6 +4,7 @@ use crate::engine::ActorId;
 use crate::geometry::Vec2;
 
 use super::forces;
+use super::heal;
 use super::message::{Message, Request, Strand};
 use super::mission::Chain;
 use super::recruit::{Recruiter, Slot, joining_place};
@@ -23,9 +24,26 @@ pub struct Networker {
     linked: bool,
     /// The control step of the child's last sign that it does, or will.
     confirmed: u64,
-    /// The robots from the worker to the child, as last heard.
+    /// The robots from the worker to the child, as last heard; without the child while that is lost.
     outer: Vec<ActorId>,
+    /// Set while its child is lost.
+    orphan: Option<Orphan>,
+    /// Where the child was when it was last heard.
+    seen: Option<Vec2>,
 }
+
+/// A networker whose child is lost: it is the other end of a break.
+#[derive(Clone, Copy, Debug)]
+struct Orphan {
+    /// The control step from which on.
+    since: u64,
+    /// Whether one beyond the break was heard to have another parent.
+    bypassed: bool,
+}
+
+/// Control steps for which the networker of each further link leaves it to those before it to take over from a lost
+/// worker.
+const PRECEDENCE: u64 = 10;
 
 impl Networker {
     /// A joiner that accepted request number `sequence` of `child` at control step `step`.
@@ -38,6 +56,24 @@ impl Networker {
             linked: false,
             confirmed: step,
             outer: Vec::new(),
+            orphan: None,
+            seen: None,
+        }
+    }
+
+    /// A worker that leaves its target to `other` and offers the chain of `slot` to it.
+    #[must_use]
+    pub fn stood_down(slot: Slot, other: ActorId, step: u64) -> Self {
+        let sequence = 0;
+        Self {
+            slot,
+            child: other,
+            sequence,
+            linked: true,
+            confirmed: step,
+            outer: Vec::new(),
+            orphan: None,
+            seen: None,
         }
     }
 
@@ -51,12 +87,38 @@ impl Networker {
         Request::Accept { to: sender, sequence }
     }
 
+    /// Answers a request to adopt: it serves whoever asks while its child is lost, and its child again and again.
+    pub fn hear_adopt(&mut self, sender: ActorId, sequence: u8, chain: u8, step: u64) -> Request {
+        let is_ahead = sender == self.slot.parent || self.slot.strand.contains(&sender);
+        let is_welcome = self.linked && (self.orphan.is_some() || sender == self.child);
+        if chain != self.slot.chain || is_ahead || !is_welcome {
+            return Request::Refuse { to: sender, sequence };
+        }
+        if sender != self.child {
+            self.outer = vec![sender];
+        }
+        self.child = sender;
+        self.orphan = None;
+        self.confirmed = step;
+        Request::Accept { to: sender, sequence }
+    }
+
     /// Takes in a child strand: if it is the child's and names `me`, the two are linked.
     pub fn hear_child_strand(&mut self, sender: ActorId, heard: &Strand, me: ActorId, step: u64) {
-        let named = sender == self.child && heard.chain == self.slot.chain && heard.next == me;
-        if named && strand::keep(&mut self.outer, &heard.robots, me) {
-            self.linked = true;
-            self.confirmed = step;
+        if heard.chain != self.slot.chain {
+            return;
+        }
+        if sender == self.child && heard.next == me {
+            if strand::keep(&mut self.outer, &heard.robots, me) {
+                self.linked = true;
+                self.orphan = None;
+                self.confirmed = step;
+            }
+        } else if let Some(orphan) = &mut self.orphan
+            && heard.next != me
+            && self.outer.contains(&sender)
+        {
+            orphan.bypassed = true;
         }
     }
 
@@ -72,11 +134,18 @@ impl Networker {
         sender == self.child
     }
 
-    /// Whether the chain has no use for it any more: its child does not count on it, or the chain is dismantled and it
-    /// has come home behind its child.
+    /// Whether the chain has no use for it any more: its child does not count on it, or is lost for long with nobody
+    /// else to count on it, or the chain is dismantled and it has come home behind its child.
     #[must_use]
     pub fn is_done(&self, view: &View<'_>) -> bool {
-        if view.step - self.confirmed > view.parameters().join_timeout {
+        let parameters = view.parameters();
+        let patience = match self.orphan {
+            Some(_) => parameters.healing_patience,
+            // Longer than a child's silence lasts that is not noticed yet.
+            None if self.linked => parameters.join_timeout + parameters.silence_steps,
+            None => parameters.join_timeout,
+        };
+        if view.step - self.confirmed > patience || self.orphan.is_some_and(|orphan| orphan.bypassed) {
             return true;
         }
         let is_home = |place: Vec2| (place - view.mission.origin).norm() <= view.parameters().safe;
@@ -86,22 +155,61 @@ impl Networker {
             && child.is_none_or(|child| is_home(child.position) || child.status.chain != self.slot.chain)
     }
 
-    /// The need that it passes on: its child's.
+    /// Whether it is the one to take over from its lost worker: the worker was its child, or whoever was between is
+    /// lost for long too, and nobody else is heard to have done so. Of the networkers of several links the first does.
+    #[must_use]
+    pub fn is_heir(&self, view: &View<'_>) -> bool {
+        let Some(orphan) = self.orphan else { return false };
+        let chain = self.slot.chain;
+        let target = view.mission.chain(chain).target;
+        let patience = if self.outer.is_empty() {
+            PRECEDENCE * u64::from(chain - view.mission.targets[usize::from(target)].chains.start)
+        } else {
+            view.parameters().healing_patience
+        };
+        view.step - orphan.since >= patience && view.expands(chain) && view.worker_of(target).is_none()
+    }
+
+    /// The need that it passes on: its child's, and its own while it makes up for a lost one.
     #[must_use]
     pub fn need(&self, view: &View<'_>) -> bool {
-        self.linked && view.neighbours.get(self.child).is_some_and(|child| child.status.need)
+        match self.orphan {
+            Some(_) => !self.outer.is_empty(),
+            None => self.linked && view.neighbours.get(self.child).is_some_and(|child| child.status.need),
+        }
+    }
+
+    /// Notices that the child is lost, or there again.
+    pub fn watch_child(&mut self, view: &View<'_>) {
+        if !self.linked {
+            return;
+        }
+        if let Some(child) = view.neighbours.get(self.child) {
+            self.seen = Some(child.position);
+            self.orphan = None;
+        } else if self.orphan.is_none() {
+            self.orphan = Some(Orphan {
+                since: view.step,
+                bypassed: false,
+            });
+            if self.outer.last() == Some(&self.child) {
+                self.outer.pop();
+            }
+        }
     }
 
     /// One control step: recruits where the chain must grow, and answers with the velocity that it wants.
     pub fn control(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) -> Vec2 {
         let wanted = self.wants_parent(view);
-        self.slot.tend(view, wanted, recruiter, out);
+        self.slot.tend(view, wanted, &self.outer, recruiter, out);
         if !self.linked {
             self.joining(view)
-        } else if view.expands(self.slot.chain) {
-            self.holding(view)
-        } else {
+        } else if !view.expands(self.slot.chain) {
             self.retreating(view)
+        } else if self.slot.broken.is_some() || self.orphan.is_some() {
+            self.bridging(view)
+        } else {
+            self.holding(view)
         }
     }
 
@@ -110,7 +218,7 @@ impl Networker {
         let chain = view.mission.chain(self.slot.chain);
         // The strand holds the worker and the relays up to the child: with this robot, as many relays as it has robots.
         self.slot.is_at_root(view)
-            && self.need(view)
+            && (self.need(view) || self.slot.broken.is_some())
             && self.outer.len() < chain.relays
             && view.expands(self.slot.chain)
             && self.slot.is_out_enough(view)
@@ -145,6 +253,17 @@ impl Networker {
         desired + self.avoidance(view, desired) * open
     }
 
+    /// Makes for the other end of a break, and keeps the neighbour that it has.
+    fn bridging(&self, view: &View<'_>) -> Vec2 {
+        let (way, tie) = match (&self.slot.broken, self.seen) {
+            (Some(broken), _) => (broken.way(view), view.way_to(self.child)),
+            (None, Some(place)) => (place - view.position, view.way_to(self.slot.parent)),
+            (None, None) => (Vec2::zeros(), None),
+        };
+        let desired = heal::velocity(view, way, tie.into_iter());
+        desired + self.avoidance(view, desired)
+    }
+
     /// Comes home ahead of its child, never so fast that the child falls behind.
     fn retreating(&self, view: &View<'_>) -> Vec2 {
         let parameters = view.parameters();
@@ -177,7 +296,8 @@ impl Networker {
             next: self.child,
             robots: strand::passed_on(&self.slot.strand, me),
         }));
-        if self.linked {
+        // The robot that it names would take it for linked.
+        if self.linked && self.slot.broken.is_none() {
             out.push(Message::ChildStrand(Strand {
                 chain: self.slot.chain,
                 next: self.slot.parent,

@@ -1,17 +1,20 @@
-//! The root: the end of all chains, which watches them grow and, when robots are too few for all, has one target after
-//! another visited (paper algorithm 3).
+//! The root: the end of all chains, which watches them grow, appoints a worker where a target has none left, and, when
+//! robots are too few for all, has one target after another visited (paper algorithm 3).
 
 use crate::engine::ActorId;
 
-use super::message::{Message, Order, Role, Strand};
+use super::message::{Message, Order, Request, Role, Strand};
 use super::mission::Mission;
+use super::recruit::Recruiter;
 use super::view::View;
 
 /// The root's state.
 #[derive(Debug)]
 pub struct Root {
-    /// The robots of each chain, worker first, as last heard from the chain's end at the root.
-    chains: Vec<Vec<ActorId>>,
+    /// What it knows of each chain.
+    lines: Vec<Line>,
+    /// The robot that it asked to become a worker.
+    appointment: Option<Appointment>,
     /// What it ordered last.
     order: Order,
     /// Control steps for which too few robots were predicted without a break.
@@ -22,12 +25,33 @@ pub struct Root {
     visited: Vec<bool>,
 }
 
+/// A chain as the root knows it.
+#[derive(Clone, Debug, Default)]
+struct Line {
+    /// Its robots, worker first, as last heard from its end at the root, without those that fell silent there since.
+    robots: Vec<ActorId>,
+    /// The control step at which it was heard last.
+    heard: u64,
+    /// Whether its end at the root fell silent since.
+    cut: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Appointment {
+    to: ActorId,
+    sequence: u8,
+    target: u8,
+    /// The control step of the request.
+    since: u64,
+}
+
 impl Root {
     /// A root that has heard of no chain yet.
     #[must_use]
     pub fn new(mission: &Mission) -> Self {
         Self {
-            chains: vec![Vec::new(); mission.chains.len()],
+            lines: vec![Line::default(); mission.chains.len()],
+            appointment: None,
             order: Order::default(),
             short_for: 0,
             held_for: 0,
@@ -36,22 +60,98 @@ impl Root {
     }
 
     /// Takes in the strand of a chain that ends here.
-    pub fn hear_child_strand(&mut self, heard: &Strand, me: ActorId) {
+    pub fn hear_child_strand(&mut self, heard: &Strand, me: ActorId, step: u64) {
         if heard.next == me
-            && let Some(chain) = self.chains.get_mut(usize::from(heard.chain).wrapping_sub(1))
+            && let Some(line) = self.lines.get_mut(usize::from(heard.chain).wrapping_sub(1))
         {
-            chain.clear();
-            chain.extend_from_slice(&heard.robots);
+            line.robots.clear();
+            line.robots.extend_from_slice(&heard.robots);
+            line.heard = step;
+            line.cut = false;
+        }
+    }
+
+    /// Takes in that `sender` answered request number `sequence`: it is the worker now, or another one must be asked.
+    pub fn hear_answer(&mut self, sender: ActorId, sequence: u8, accepted: bool, mission: &Mission, step: u64) {
+        let is_it = |asked: &mut Appointment| asked.to == sender && asked.sequence == sequence;
+        if let Some(asked) = self.appointment.take_if(is_it)
+            && accepted
+        {
+            for chain in mission.targets[usize::from(asked.target)].chains.clone() {
+                self.lines[usize::from(chain) - 1].heard = step;
+            }
         }
     }
 
     /// One control step: what is to be expanded from now on.
-    pub fn control(&mut self, view: &View<'_>) -> Order {
+    pub fn control(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) -> Order {
+        self.watch_ends(view);
         match self.order.only {
             None => self.watch_for_shortage(view),
             Some(target) => self.visit(view, target),
         }
+        self.appoint(view, recruiter, out);
         self.order
+    }
+
+    /// Notices where the end of a chain fell silent, and forgets what was not heard for long.
+    fn watch_ends(&mut self, view: &View<'_>) {
+        for line in &mut self.lines {
+            let end_is_silent = line
+                .robots
+                .last()
+                .is_some_and(|&end| view.neighbours.get(end).is_none());
+            if !line.cut && end_is_silent {
+                line.robots.pop();
+                line.cut = true;
+            }
+            if view.step - line.heard > view.parameters().healing_patience {
+                line.robots.clear();
+            }
+        }
+    }
+
+    /// Asks a free robot to become the worker of a target that has none left.
+    fn appoint(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) {
+        let parameters = view.parameters();
+        if self
+            .appointment
+            .is_some_and(|asked| view.step - asked.since > parameters.request_patience)
+        {
+            self.appointment = None;
+        }
+        if self.appointment.is_none()
+            && let Some(target) = self.abandoned(view)
+            && let Some(to) = recruiter.candidate(view, view.mission.targets[usize::from(target)].at)
+        {
+            self.appointment = Some(Appointment {
+                to,
+                sequence: recruiter.number(view, to, parameters.refusal_memory),
+                target,
+                since: view.step,
+            });
+        }
+        if let Some(Appointment {
+            to, sequence, target, ..
+        }) = self.appointment
+            && view.turn().is_multiple_of(parameters.request_every)
+        {
+            out.push(Message::Request(Request::Work { to, sequence, target }));
+        }
+    }
+
+    /// A target to be expanded of which nobody is left: nothing is heard of its worker, nor for long of anybody who
+    /// could come in from farther out and take over.
+    fn abandoned(&self, view: &View<'_>) -> Option<u8> {
+        let parameters = view.parameters();
+        let is_gone = |line: &Line| {
+            line.robots.is_empty() && view.step - line.heard > parameters.join_timeout + parameters.silence_steps
+        };
+        (0..).zip(&view.mission.targets).find_map(|(target, plan)| {
+            let mut lines = plan.chains.clone().map(|chain| &self.lines[usize::from(chain) - 1]);
+            let abandoned = view.order.expands(target) && lines.all(is_gone) && view.worker_of(target).is_none();
+            abandoned.then_some(target)
+        })
     }
 
     /// Predicts whether the robots will do; when they have not for long enough, keeps one target only: the one whose
@@ -61,7 +161,9 @@ impl Root {
         if self.short_for > view.parameters().shortage_patience {
             let robots = |target: &usize| -> usize {
                 let chains = view.mission.targets[*target].chains.clone();
-                chains.map(|chain| self.chains[usize::from(chain) - 1].len()).sum()
+                chains
+                    .map(|chain| self.lines[usize::from(chain) - 1].robots.len())
+                    .sum()
             };
             // The first of the largest: max_by_key would take the last.
             let largest = (0..self.visited.len()).rev().max_by_key(robots);
@@ -75,8 +177,8 @@ impl Root {
             .mission
             .chains
             .iter()
-            .zip(&self.chains)
-            .map(|(plan, robots)| plan.relays.saturating_sub(robots.len().saturating_sub(1)))
+            .zip(&self.lines)
+            .map(|(plan, line)| plan.relays.saturating_sub(line.robots.len().saturating_sub(1)))
             .sum();
         let to_come = view
             .neighbours
@@ -91,8 +193,8 @@ impl Root {
     }
 
     fn has(&self, chain: u8, robot: ActorId) -> bool {
-        let chain = self.chains.get(usize::from(chain).wrapping_sub(1));
-        chain.is_some_and(|robots| robots.contains(&robot))
+        let line = self.lines.get(usize::from(chain).wrapping_sub(1));
+        line.is_some_and(|line| line.robots.contains(&robot))
     }
 
     /// When `target` was held for long enough, has the next one visited.
@@ -114,7 +216,7 @@ impl Root {
     /// Whether all chains to `target` are complete and say that it is reached.
     fn is_held(&self, view: &View<'_>, target: u8) -> bool {
         view.mission.targets[usize::from(target)].chains.clone().all(|chain| {
-            let robots = &self.chains[usize::from(chain) - 1];
+            let robots = &self.lines[usize::from(chain) - 1].robots;
             let last = robots.last().and_then(|&robot| view.neighbours.get(robot));
             robots.len() > view.mission.chain(chain).relays && last.is_some_and(|last| !last.status.need)
         })
