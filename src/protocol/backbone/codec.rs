@@ -5,6 +5,7 @@
 //! | status | role, previous role, parent need, target chain |
 //! | join, adopt | kind, to, sequence, chain |
 //! | work | kind, to, sequence, target |
+//! | replace | kind, to, child, sequence, chain, number of robots beyond |
 //! | accept, refuse | kind, to, sequence |
 //! | release | kind, to |
 //! | order | kind, epoch, target + 1 or 0 for all |
@@ -28,6 +29,7 @@ const RELEASE: u8 = 0x13;
 const ORDER: u8 = 0x14;
 const ADOPT: u8 = 0x15;
 const WORK: u8 = 0x16;
+const REPLACE: u8 = 0x17;
 const PARENT_STRAND: u8 = 0x20;
 const CHILD_STRAND: u8 = 0x21;
 const WIDE_IDS: u8 = 0x80;
@@ -72,6 +74,19 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
         Request::Work { to, sequence, target } => {
             put_addressed(WORK, to, bytes);
             bytes.put_slice(&[sequence, target]);
+        }
+        Request::Replace {
+            to,
+            sequence,
+            chain,
+            child,
+            beyond,
+        } => {
+            let wide = is_wide(to) || is_wide(child);
+            bytes.put_u8(if wide { REPLACE | WIDE_IDS } else { REPLACE });
+            put_id(to, wide, bytes);
+            put_id(child, wide, bytes);
+            bytes.put_slice(&[sequence, chain, beyond]);
         }
         Request::Accept { to, sequence } => {
             put_addressed(ACCEPT, to, bytes);
@@ -145,6 +160,13 @@ impl Decoder for BackboneCodec {
                 to: reader.id(wide)?,
                 sequence: reader.byte()?,
                 target: reader.byte()?,
+            }),
+            REPLACE => Message::Request(Request::Replace {
+                to: reader.id(wide)?,
+                child: reader.id(wide)?,
+                sequence: reader.byte()?,
+                chain: reader.byte()?,
+                beyond: reader.byte()?,
             }),
             ACCEPT => Message::Request(Request::Accept {
                 to: reader.id(wide)?,
@@ -264,6 +286,13 @@ mod tests {
             (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, chain)| Request::Join { to, sequence, chain }),
             (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, chain)| Request::Adopt { to, sequence, chain }),
             (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, target)| Request::Work { to, sequence, target }),
+            (id(), id(), any::<[u8; 3]>()).prop_map(|(to, child, [sequence, chain, beyond])| Request::Replace {
+                to,
+                sequence,
+                chain,
+                child,
+                beyond,
+            }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
             id().prop_map(|to| Request::Release { to }),

@@ -2,10 +2,10 @@
 //!
 //! A robot whose parent is lost goes to where it was last heard and on towards the root, never so far that it loses
 //! another neighbour of its chains. On the way it asks a robot of its own chain that is nearer to the root and has lost
-//! its child to become its parent; comes near enough to the root to be linked to it; or recruits a free robot in the
-//! root's stead. A robot whose child is lost goes to where that one was last heard, never so far that it loses its
-//! parent, passes on a need to grow, for the chain has one robot less, and waits to be asked. So both ends take their
-//! half, and the robot that replaces the failed one comes in at the root's end.
+//! its child to become its parent, until it is near enough to the root to be linked to it. A robot whose child is lost
+//! goes to where that one was last heard, never so far that it loses its parent, passes on a need to grow, for the chain
+//! has one robot less, and waits to be asked. The root, which never moves, sends a free robot in its stead. So both ends
+//! take their half, and the robot that replaces the failed one comes in at the root's end.
 
 use crate::engine::ActorId;
 use crate::geometry::Vec2;

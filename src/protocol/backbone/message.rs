@@ -86,6 +86,20 @@ pub enum Request {
         /// The target, an index into the mission's.
         target: u8,
     },
+    /// The root asks a free robot to replace the end of a chain that fell silent: to become its child there, and to wait
+    /// for those beyond.
+    Replace {
+        /// The robot asked.
+        to: ActorId,
+        /// Number of this request among the sender's; repetitions have the same.
+        sequence: u8,
+        /// The chain.
+        chain: u8,
+        /// The robot that was next to the one that fell silent.
+        child: ActorId,
+        /// How many robots there are beyond the break, the child and the worker included.
+        beyond: u8,
+    },
     /// Yes to the request with this number.
     Accept {
         /// Who asked.

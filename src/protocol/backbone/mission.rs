@@ -56,6 +56,12 @@ impl Chain {
         self.lane * (ahead / self.rest).clamp(0.0, 1.0)
     }
 
+    /// The place of the relay next to the root, which stands at `origin`.
+    #[must_use]
+    pub fn first_place(&self, origin: Vec2) -> Vec2 {
+        origin + self.forward * self.rest + self.left() * self.lane
+    }
+
     /// The left of the way from the root to the target, a unit vector.
     #[must_use]
     pub fn left(&self) -> Vec2 {

@@ -32,7 +32,7 @@ pub use message::{Message, Order, Request, Role, Status, Strand};
 use mission::{Mission, Parameters};
 use neighbours::Neighbours;
 use networker::Networker;
-use recruit::Recruiter;
+use recruit::{Recruiter, Slot};
 use root::Root;
 use sidestep::Sidestep;
 use view::{Knowledge, View};
@@ -184,6 +184,16 @@ impl Backbone {
             Request::Work { to, sequence, target } if to == self.known.id => {
                 out.push(Message::Request(self.answer_work(sender, sequence, target)));
             }
+            Request::Replace {
+                to,
+                sequence,
+                chain,
+                child,
+                beyond,
+            } if to == self.known.id => {
+                let beyond = vec![child; usize::from(beyond)];
+                out.push(Message::Request(self.answer_replace(sender, sequence, chain, beyond)));
+            }
             Request::Accept { to, sequence } if to == self.known.id => self.hear_accept(sender, sequence, out),
             Request::Refuse { to, sequence } if to == self.known.id => {
                 if let Duty::Root(root) = &mut self.duty {
@@ -222,6 +232,22 @@ impl Backbone {
             Duty::Worker(worker) if worker.target == target => Request::Accept { to: sender, sequence },
             Duty::Free if usize::from(target) < mission.targets.len() => {
                 self.duty = Duty::Worker(Worker::new(target, mission));
+                self.previous = Role::Free;
+                Request::Accept { to: sender, sequence }
+            }
+            _ => Request::Refuse { to: sender, sequence },
+        }
+    }
+
+    /// The answer to the root's request to replace a lost robot of `chain`, `beyond` which so many are left: a free robot
+    /// does. Their names it learns from their strands.
+    fn answer_replace(&mut self, sender: ActorId, sequence: u8, chain: u8, beyond: Vec<ActorId>) -> Request {
+        let Knowledge { mission, step, .. } = &self.known;
+        match (&mut self.duty, beyond.last().copied()) {
+            (Duty::Networker(networker), _) => networker.hear_replace(sender, sequence, chain),
+            (Duty::Free, Some(child)) if mission.has_chain(chain) => {
+                let slot = Slot::new(chain, mission.root);
+                self.duty = Duty::Networker(Networker::waiting(slot, child, sequence, beyond, *step));
                 self.previous = Role::Free;
                 Request::Accept { to: sender, sequence }
             }
@@ -287,7 +313,7 @@ impl Backbone {
                 if let Some(better) = worker.better(&view) {
                     self.replace_duty(|duty, known| match duty {
                         Duty::Worker(worker) => worker.into_slot(known.mission.root).map_or(Duty::Free, |slot| {
-                            Duty::Networker(Networker::stood_down(slot, better, known.step))
+                            Duty::Networker(Networker::waiting(slot, better, 0, Vec::new(), known.step))
                         }),
                         other => other,
                     });
@@ -324,7 +350,7 @@ impl Backbone {
     fn may_step_aside(&self) -> bool {
         match &self.duty {
             Duty::Free => true,
-            Duty::Networker(networker) => !networker.is_linked(),
+            Duty::Networker(networker) => !networker.is_settled(),
             Duty::Root(_) | Duty::Worker(_) => false,
         }
     }
@@ -399,7 +425,7 @@ impl Duty {
         }
     }
 
-    fn slots(&self) -> &[recruit::Slot] {
+    fn slots(&self) -> &[Slot] {
         match self {
             Self::Free | Self::Root(_) => &[],
             Self::Networker(networker) => std::slice::from_ref(&networker.slot),
@@ -407,7 +433,7 @@ impl Duty {
         }
     }
 
-    fn slots_mut(&mut self) -> &mut [recruit::Slot] {
+    fn slots_mut(&mut self) -> &mut [Slot] {
         match self {
             Self::Free | Self::Root(_) => &mut [],
             Self::Networker(networker) => std::slice::from_mut(&mut networker.slot),

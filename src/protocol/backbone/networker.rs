@@ -41,6 +41,15 @@ struct Orphan {
     bypassed: bool,
 }
 
+impl Orphan {
+    const fn since(step: u64) -> Self {
+        Self {
+            since: step,
+            bypassed: false,
+        }
+    }
+}
+
 /// Control steps for which the networker of each further link leaves it to those before it to take over from a lost
 /// worker.
 const PRECEDENCE: u64 = 10;
@@ -61,19 +70,28 @@ impl Networker {
         }
     }
 
-    /// A worker that leaves its target to `other` and offers the chain of `slot` to it.
+    /// The end of a break, at control step `step`: it has the parent of `slot`, and waits for `child`, beyond which it
+    /// knows `outer`.
     #[must_use]
-    pub fn stood_down(slot: Slot, other: ActorId, step: u64) -> Self {
-        let sequence = 0;
+    pub fn waiting(slot: Slot, child: ActorId, sequence: u8, outer: Vec<ActorId>, step: u64) -> Self {
         Self {
             slot,
-            child: other,
+            child,
             sequence,
             linked: true,
             confirmed: step,
-            outer: Vec::new(),
-            orphan: None,
+            outer,
+            orphan: Some(Orphan::since(step)),
             seen: None,
+        }
+    }
+
+    /// Answers a request to replace a lost robot: the one that it accepted it accepts again.
+    pub fn hear_replace(&mut self, sender: ActorId, sequence: u8, chain: u8) -> Request {
+        if self.orphan.is_some() && self.slot.parent == sender && self.sequence == sequence && self.slot.chain == chain {
+            Request::Accept { to: sender, sequence }
+        } else {
+            Request::Refuse { to: sender, sequence }
         }
     }
 
@@ -122,10 +140,10 @@ impl Networker {
         }
     }
 
-    /// Whether its child counts on it.
+    /// Whether it holds its place, with a child and a parent that it counts on.
     #[must_use]
-    pub const fn is_linked(&self) -> bool {
-        self.linked
+    pub const fn is_settled(&self) -> bool {
+        self.linked && self.orphan.is_none() && self.slot.broken.is_none()
     }
 
     /// Whether a release by `sender` frees it.
@@ -179,19 +197,15 @@ impl Networker {
         }
     }
 
-    /// Notices that the child is lost, or there again.
+    /// Notices that the child is lost.
     pub fn watch_child(&mut self, view: &View<'_>) {
         if !self.linked {
             return;
         }
         if let Some(child) = view.neighbours.get(self.child) {
             self.seen = Some(child.position);
-            self.orphan = None;
         } else if self.orphan.is_none() {
-            self.orphan = Some(Orphan {
-                since: view.step,
-                bypassed: false,
-            });
+            self.orphan = Some(Orphan::since(view.step));
             if self.outer.last() == Some(&self.child) {
                 self.outer.pop();
             }
@@ -218,7 +232,7 @@ impl Networker {
         let chain = view.mission.chain(self.slot.chain);
         // The strand holds the worker and the relays up to the child: with this robot, as many relays as it has robots.
         self.slot.is_at_root(view)
-            && (self.need(view) || self.slot.broken.is_some())
+            && self.need(view)
             && self.outer.len() < chain.relays
             && view.expands(self.slot.chain)
             && self.slot.is_out_enough(view)
@@ -255,10 +269,12 @@ impl Networker {
 
     /// Makes for the other end of a break, and keeps the neighbour that it has.
     fn bridging(&self, view: &View<'_>) -> Vec2 {
-        let (way, tie) = match (&self.slot.broken, self.seen) {
-            (Some(broken), _) => (broken.way(view), view.way_to(self.child)),
-            (None, Some(place)) => (place - view.position, view.way_to(self.slot.parent)),
-            (None, None) => (Vec2::zeros(), None),
+        let (way, tie) = if let Some(broken) = &self.slot.broken {
+            (broken.way(view), view.way_to(self.child))
+        } else {
+            let first = || view.mission.chain(self.slot.chain).first_place(view.mission.origin);
+            let place = self.seen.unwrap_or_else(first);
+            (place - view.position, view.way_to(self.slot.parent))
         };
         let desired = heal::velocity(view, way, tie.into_iter());
         desired + self.avoidance(view, desired)
@@ -281,7 +297,7 @@ impl Networker {
 
     fn avoidance(&self, view: &View<'_>, desired: Vec2) -> Vec2 {
         let parameters = view.parameters();
-        let range = if self.linked {
+        let range = if self.is_settled() {
             parameters.backbone_avoidance_range
         } else {
             parameters.avoidance_range

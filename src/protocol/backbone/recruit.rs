@@ -223,16 +223,17 @@ impl Slot {
         self.invitation = None;
     }
 
-    /// Asks the other end of a break if one is in sight, else a free robot if one is wanted.
+    /// Asks the other end of a break if one is in sight; at the root, asks a free robot if one is wanted.
     fn invite(&mut self, view: &View<'_>, wanted: bool, descendants: &[ActorId], recruiter: &mut Recruiter) {
         if self.broken.is_some() {
             if let Some(other_end) = recruiter.bridge(view, self.chain, descendants) {
                 self.invitation = Some(recruiter.invite(view, other_end, Kind::Adopt));
                 return;
             }
-            if view.way_to_root().norm() <= view.parameters().critical {
-                self.broken = None;
+            if view.way_to_root().norm() > view.parameters().critical {
+                return;
             }
+            self.broken = None;
         }
         if wanted {
             let place = joining_place(view.mission.origin, view.position, view.mission.chain(self.chain));

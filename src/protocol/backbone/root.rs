@@ -2,6 +2,7 @@
 //! robots are too few for all, has one target after another visited (paper algorithm 3).
 
 use crate::engine::ActorId;
+use crate::geometry::Vec2;
 
 use super::message::{Message, Order, Request, Role, Strand};
 use super::mission::Mission;
@@ -13,7 +14,7 @@ use super::view::View;
 pub struct Root {
     /// What it knows of each chain.
     lines: Vec<Line>,
-    /// The robot that it asked to become a worker.
+    /// The robot that it asked to fill a place.
     appointment: Option<Appointment>,
     /// What it ordered last.
     order: Order,
@@ -40,9 +41,28 @@ struct Line {
 struct Appointment {
     to: ActorId,
     sequence: u8,
-    target: u8,
+    vacancy: Vacancy,
     /// The control step of the request.
     since: u64,
+}
+
+/// A place that a free robot must fill.
+#[derive(Clone, Copy, Debug)]
+enum Vacancy {
+    /// That of the worker of a target.
+    Worker(u8),
+    /// That next to the root in a chain.
+    End(u8),
+}
+
+impl Vacancy {
+    /// Where the robot that fills it has to go first.
+    fn place(self, mission: &Mission) -> Vec2 {
+        match self {
+            Self::Worker(target) => mission.targets[usize::from(target)].at,
+            Self::End(chain) => mission.chain(chain).first_place(mission.origin),
+        }
+    }
 }
 
 impl Root {
@@ -71,14 +91,23 @@ impl Root {
         }
     }
 
-    /// Takes in that `sender` answered request number `sequence`: it is the worker now, or another one must be asked.
+    /// Takes in that `sender` answered request number `sequence`: it fills the place, or another one must be asked.
     pub fn hear_answer(&mut self, sender: ActorId, sequence: u8, accepted: bool, mission: &Mission, step: u64) {
         let is_it = |asked: &mut Appointment| asked.to == sender && asked.sequence == sequence;
-        if let Some(asked) = self.appointment.take_if(is_it)
-            && accepted
-        {
-            for chain in mission.targets[usize::from(asked.target)].chains.clone() {
-                self.lines[usize::from(chain) - 1].heard = step;
+        let Some(asked) = self.appointment.take_if(is_it).filter(|_| accepted) else {
+            return;
+        };
+        match asked.vacancy {
+            Vacancy::Worker(target) => {
+                for chain in mission.targets[usize::from(target)].chains.clone() {
+                    self.lines[usize::from(chain) - 1].heard = step;
+                }
+            }
+            Vacancy::End(chain) => {
+                let line = &mut self.lines[usize::from(chain) - 1];
+                line.robots.push(sender);
+                line.heard = step;
+                line.cut = false;
             }
         }
     }
@@ -111,33 +140,55 @@ impl Root {
         }
     }
 
-    /// Asks a free robot to become the worker of a target that has none left.
+    /// Asks a free robot to fill a place that a failure left empty.
     fn appoint(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) {
         let parameters = view.parameters();
-        if self
-            .appointment
-            .is_some_and(|asked| view.step - asked.since > parameters.request_patience)
-        {
+        let is_over = |asked: &Appointment| view.step - asked.since > parameters.request_patience;
+        if self.appointment.as_ref().is_some_and(is_over) {
             self.appointment = None;
         }
         if self.appointment.is_none()
-            && let Some(target) = self.abandoned(view)
-            && let Some(to) = recruiter.candidate(view, view.mission.targets[usize::from(target)].at)
+            && let Some(vacancy) = self.vacancy(view)
+            && let Some(to) = recruiter.candidate(view, vacancy.place(view.mission))
         {
             self.appointment = Some(Appointment {
                 to,
                 sequence: recruiter.number(view, to, parameters.refusal_memory),
-                target,
+                vacancy,
                 since: view.step,
             });
         }
-        if let Some(Appointment {
-            to, sequence, target, ..
-        }) = self.appointment
+        if let Some(asked) = self.appointment
             && view.turn().is_multiple_of(parameters.request_every)
         {
-            out.push(Message::Request(Request::Work { to, sequence, target }));
+            out.extend(self.request(asked).map(Message::Request));
         }
+    }
+
+    fn request(&self, asked: Appointment) -> Option<Request> {
+        let Appointment { to, sequence, .. } = asked;
+        match asked.vacancy {
+            Vacancy::Worker(target) => Some(Request::Work { to, sequence, target }),
+            Vacancy::End(chain) => {
+                let beyond = &self.lines[usize::from(chain) - 1].robots;
+                beyond.last().map(|&child| Request::Replace {
+                    to,
+                    sequence,
+                    chain,
+                    child,
+                    beyond: beyond.len() as u8,
+                })
+            }
+        }
+    }
+
+    fn vacancy(&self, view: &View<'_>) -> Option<Vacancy> {
+        let open = |chain: &u8| {
+            let line = &self.lines[usize::from(*chain) - 1];
+            line.cut && !line.robots.is_empty() && view.expands(*chain)
+        };
+        let end = (1..=self.lines.len() as u8).find(open).map(Vacancy::End);
+        end.or_else(|| self.abandoned(view).map(Vacancy::Worker))
     }
 
     /// A target to be expanded of which nobody is left: nothing is heard of its worker, nor for long of anybody who
