@@ -43,6 +43,7 @@ impl ControlSteps {
 pub struct Alarms {
     timers: Vec<(TimerId, SimTime)>,
     arrival: SimTime,
+    asleep: bool,
 }
 
 impl Default for Alarms {
@@ -50,13 +51,17 @@ impl Default for Alarms {
         Self {
             timers: Vec::new(),
             arrival: SimTime::NEVER,
+            asleep: false,
         }
     }
 }
 
 impl Alarms {
-    /// The instant of the first alarm; `NEVER` for none.
+    /// The instant of the first alarm; `NEVER` for none, and while the robot is asleep.
     pub fn next(&self) -> SimTime {
+        if self.asleep {
+            return SimTime::NEVER;
+        }
         let timer = self.timers.iter().map(|timer| timer.1).min();
         self.arrival.min(timer.unwrap_or(SimTime::NEVER))
     }
@@ -66,6 +71,25 @@ impl Alarms {
         match self.timers.iter().position(|timer| timer.1 <= now) {
             Some(due) => Wake::Timer(self.timers.swap_remove(due).0),
             None => Wake::Reception,
+        }
+    }
+
+    /// Whether the robot is asleep: nothing wakes it, control steps neither.
+    pub fn is_asleep(&self) -> bool {
+        self.asleep
+    }
+
+    /// Puts the robot to sleep until it is [resumed](Self::resume).
+    pub fn sleep(&mut self) {
+        self.asleep = true;
+    }
+
+    /// Ends a sleep at `now`, if there is one. Timers that ran out meanwhile are due at once.
+    pub fn resume(&mut self, now: SimTime) {
+        if std::mem::take(&mut self.asleep) {
+            for (_, due) in &mut self.timers {
+                *due = now.max(*due);
+            }
         }
     }
 
@@ -125,6 +149,19 @@ mod tests {
         assert_eq!(alarms.take_due(at(30)), Wake::Timer(TimerId(1)));
         assert_eq!(alarms.next(), at(30));
         assert_eq!(alarms.take_due(at(30)), Wake::Reception);
+    }
+
+    #[test]
+    fn a_robot_that_slept_fires_at_once_what_ran_out_meanwhile_and_keeps_its_other_timers() {
+        let mut alarms = Alarms::default();
+        alarms.set_timer(TimerId(1), Some(at(50)), at(0));
+        alarms.set_timer(TimerId(2), Some(at(500)), at(0));
+        alarms.sleep();
+        assert_eq!(alarms.next(), SimTime::NEVER);
+        alarms.resume(at(231));
+        assert_eq!(alarms.next(), at(231));
+        assert_eq!(alarms.take_due(at(231)), Wake::Timer(TimerId(1)));
+        assert_eq!(alarms.next(), at(500));
     }
 
     proptest! {

@@ -2,15 +2,16 @@
 
 use tokio_util::sync::CancellationToken;
 
-use super::air::Air;
+use super::air::{Air, Surroundings};
 use super::clock::{Alarms, ControlSteps};
 use super::digest::Digest;
 use super::error::RunError;
 use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams};
+use crate::faults::{Change, Faults, Health, Subject};
 use crate::geometry::Vec2;
 use crate::metrics::{Progress, Recorder, RunEnd, TrialRecord};
 use crate::motion::World;
-use crate::protocol::{Input, Output, Protocol, Robot, Wake};
+use crate::protocol::{Input, Note, Output, Protocol, Robot, Wake};
 
 const ROBOT: Purpose = Purpose::new("protocol.robot");
 
@@ -18,6 +19,7 @@ const ROBOT: Purpose = Purpose::new("protocol.robot");
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Event {
     MotionTick,
+    Fault,
     /// A robot's timers and arrivals.
     Alarm(ActorId),
     /// The control steps of all robots that are due.
@@ -30,10 +32,11 @@ impl EventKey for Event {
     fn class(&self) -> u8 {
         match self {
             Self::MotionTick => 0,
-            Self::Alarm(_) => 1,
-            Self::ControlSteps => 2,
-            Self::Sample => 3,
-            Self::Observe => 4,
+            Self::Fault => 1,
+            Self::Alarm(_) => 2,
+            Self::ControlSteps => 3,
+            Self::Sample => 4,
+            Self::Observe => 5,
         }
     }
 }
@@ -66,6 +69,8 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     driver: D,
     world: World,
     air: Air<P>,
+    faults: Faults,
+    changes: Vec<Change>,
     recorder: Recorder,
     digest: Digest,
     control_steps: ControlSteps,
@@ -82,16 +87,18 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
 
 impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     /// A run in which robot i takes its first control step at `first_steps[i]`, less than a period from the start.
+    #[allow(clippy::too_many_arguments)] // The parts of a run, each once.
     pub fn new(
         rhythm: Rhythm,
         driver: D,
         world: World,
         air: Air<P>,
+        faults: Faults,
         recorder: Recorder,
         streams: Streams,
         first_steps: &[SimTime],
     ) -> Self {
-        let mut queue = EventQueue::with_capacity(first_steps.len() + 4);
+        let mut queue = EventQueue::with_capacity(first_steps.len() + 5);
         queue.schedule(Event::MotionTick, SimTime::ZERO + world.tick());
         if rhythm.sample_interval > Span::ZERO {
             queue.schedule(Event::Sample, SimTime::ZERO);
@@ -101,12 +108,17 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         }
         let control_steps = ControlSteps::new(first_steps, rhythm.control_period);
         queue.schedule(Event::ControlSteps, control_steps.upcoming());
+        if faults.next() < SimTime::NEVER {
+            queue.schedule(Event::Fault, faults.next());
+        }
         Self {
             rhythm,
             queue,
             driver,
             world,
             air,
+            faults,
+            changes: Vec::new(),
             recorder,
             digest: Digest::new(),
             control_steps,
@@ -138,6 +150,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                     self.world.advance();
                     self.queue.schedule(event, now + self.world.tick());
                 }
+                Event::Fault => self.suffer(now),
                 Event::Alarm(_) => self.ring_alarms(now).await?,
                 Event::ControlSteps => self.take_control_steps(now).await?,
                 Event::Sample => {
@@ -176,6 +189,9 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     /// Wakes every robot that has a control step at `now`.
     async fn take_control_steps(&mut self, now: SimTime) -> Result<(), RunError> {
         while let Some(robot) = self.control_steps.take_due(now) {
+            if self.alarms[robot.index()].is_asleep() {
+                continue;
+            }
             let job = self.prepare(now, robot, Wake::ControlStep);
             self.batch.push(job);
         }
@@ -185,7 +201,8 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
 
     /// Has the robots of the batch take their steps, and lets their answers take effect.
     async fn dispatch(&mut self) -> Result<(), RunError> {
-        self.events += self.batch.len() as u64 - 1;
+        // The event that led here is counted already, even if it found nobody awake.
+        self.events += (self.batch.len() as u64).saturating_sub(1);
         self.driver.dispatch(&mut self.batch).await;
         let mut batch = std::mem::take(&mut self.batch);
         for mut job in batch.drain(..) {
@@ -261,14 +278,22 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         self.digest.wake(now, robot, input, output);
         for note in output.notes.drain(..) {
             self.recorder.note(robot, &note);
+            if let Note::Role(role) = note {
+                self.faults.enter(now, robot, role.0);
+                self.plan_faults();
+            }
         }
         if let Some(velocity) = output.velocity {
             self.world.command(robot, velocity);
         }
-        if !output.broadcasts.is_empty() {
+        if !output.broadcasts.is_empty() && self.faults.health(robot).sends {
             let messages = output.broadcasts.drain(..);
+            let place = Surroundings {
+                world: &self.world,
+                faults: &self.faults,
+            };
             self.air
-                .broadcast(now, robot, messages, &self.world, &mut self.recorder, &mut self.digest)?;
+                .broadcast(now, robot, messages, place, &mut self.recorder, &mut self.digest)?;
         }
         let rang = input.wake != Wake::ControlStep;
         if rang || self.rhythm.wake_on_reception || !output.timers.is_empty() {
@@ -279,6 +304,47 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             self.set_alarm(robot);
         }
         Ok(())
+    }
+
+    /// Lets robots and links fail and recover.
+    fn suffer(&mut self, now: SimTime) {
+        self.locate(now);
+        let mut changes = std::mem::take(&mut self.changes);
+        self.faults.advance(now, &self.positions, &mut changes);
+        for change in changes.drain(..) {
+            self.digest.fault(now, &change);
+            self.recorder.fault(now, &change);
+            if let Subject::Robot { robot, health, .. } = change.subject {
+                self.ail(now, robot, health);
+            }
+        }
+        self.changes = changes;
+        self.plan_faults();
+    }
+
+    /// From `now` on `robot` can do what its `health` allows.
+    fn ail(&mut self, now: SimTime, robot: ActorId, health: Health) {
+        self.air.set_hearing(now, robot, health.hears, &mut self.recorder);
+        let alarms = &mut self.alarms[robot.index()];
+        if self.rhythm.wake_on_reception {
+            alarms.set_arrival(self.air.next_arrival(robot));
+        }
+        if health.acts {
+            alarms.resume(now);
+        } else {
+            alarms.sleep();
+            self.world.command(robot, Vec2::zeros());
+        }
+        self.set_alarm(robot);
+    }
+
+    fn plan_faults(&mut self) {
+        match self.faults.next() {
+            SimTime::NEVER => {
+                self.queue.cancel(&Event::Fault);
+            }
+            next => self.queue.schedule(Event::Fault, next),
+        }
     }
 
     /// Brings forward the wakes of robots that frames were just sent to.
