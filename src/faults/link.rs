@@ -11,8 +11,14 @@ pub(super) type Placed = (ActorId, Vec2);
 #[derive(Debug)]
 enum Kind {
     /// A point of the line and its direction.
-    Partition { point: Vec2, along: Vec2 },
-    Burst { links: LinksConfig, loss: f64 },
+    Partition {
+        point: Vec2,
+        along: Vec2,
+    },
+    Burst {
+        links: LinksConfig,
+        loss: f64,
+    },
 }
 
 /// One fault of links.

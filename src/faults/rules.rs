@@ -111,7 +111,10 @@ impl Check<'_> {
         for (index, name) in named.iter().enumerate() {
             if !known.contains(&name.as_str()) {
                 let guess = nearest(name, known).map_or(".".into(), |role| format!(", did you mean `{role}`?"));
-                let message = format!("the protocol has no role `{name}`{guess} Its roles: {}", known.join(", "));
+                let message = format!(
+                    "the protocol has no role `{name}`{guess} Its roles: {}",
+                    known.join(", ")
+                );
                 self.report(&format!("roles[{index}]"), &message);
             }
         }

@@ -96,7 +96,8 @@ impl<P: Protocol> Air<P> {
         self.hindrances.clear();
         if faults.trouble_links() {
             let here = world.position(sender, now);
-            let hindrance = |listener: &Listener| faults.link_loss((sender, here), (listener.id, here - listener.sender));
+            let hindrance =
+                |listener: &Listener| faults.link_loss((sender, here), (listener.id, here - listener.sender));
             self.hindrances.extend(self.listeners.iter().map(hindrance));
         }
         for message in messages {

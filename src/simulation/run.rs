@@ -313,7 +313,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         self.faults.advance(now, &self.positions, &mut changes);
         for change in changes.drain(..) {
             self.digest.fault(now, &change);
-            self.recorder.fault(now, &change);
+            self.recorder.fault(now, &change, &self.positions);
             if let Subject::Robot { robot, health, .. } = change.subject {
                 self.ail(now, robot, health);
             }
