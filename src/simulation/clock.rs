@@ -9,6 +9,8 @@ pub struct WakeClock {
     control_step: SimTime,
     timers: Vec<(TimerId, SimTime)>,
     arrival: SimTime,
+    /// Whether it is asleep: nothing wakes it.
+    asleep: bool,
     /// Number of the last batch of wakes that the robot was part of.
     batch: u64,
 }
@@ -20,6 +22,7 @@ impl WakeClock {
             control_step: first_step,
             timers: Vec::new(),
             arrival: SimTime::NEVER,
+            asleep: false,
             batch: 0,
         }
     }
@@ -29,8 +32,11 @@ impl WakeClock {
         std::mem::replace(&mut self.batch, batch) != batch
     }
 
-    /// The next instant at which the robot wakes.
+    /// The next instant at which the robot wakes; `NEVER` while it is asleep.
     pub fn next(&self) -> SimTime {
+        if self.asleep {
+            return SimTime::NEVER;
+        }
         let timer = self.timers.iter().map(|timer| timer.1).min();
         self.control_step.min(self.arrival).min(timer.unwrap_or(SimTime::NEVER))
     }
@@ -46,6 +52,24 @@ impl WakeClock {
             return Wake::ControlStep;
         }
         Wake::Reception
+    }
+
+    /// Puts the robot to sleep until it is [resumed](Self::resume).
+    pub fn sleep(&mut self) {
+        self.asleep = true;
+    }
+
+    /// Ends a sleep at `now`: control steps go on in their rhythm, the next one at `now` at the earliest. Timers that ran out
+    /// meanwhile are due at once. Changes nothing for a robot that is not asleep.
+    pub fn resume(&mut self, now: SimTime, period: Span) {
+        if !std::mem::take(&mut self.asleep) {
+            return;
+        }
+        let missed = now.since(self.control_step).as_nanos().div_ceil(period.as_nanos());
+        self.control_step += period * missed;
+        for (_, due) in &mut self.timers {
+            *due = now.max(*due);
+        }
     }
 
     /// Sets, moves (`Some`) or cancels (`None`) a timer. One that is due already fires at `now`.
@@ -104,6 +128,22 @@ mod tests {
         assert_eq!(clock.next(), at(50));
         clock.set_timer(TimerId(1), None, at(0));
         assert_eq!(clock.next(), at(100));
+    }
+
+    #[test]
+    fn a_robot_that_slept_keeps_its_rhythm_and_fires_at_once_what_ran_out_meanwhile() {
+        let mut clock = WakeClock::new(at(30));
+        clock.set_timer(TimerId(1), Some(at(50)), at(0));
+        clock.set_timer(TimerId(2), Some(at(500)), at(0));
+        clock.sleep();
+        assert_eq!(clock.next(), SimTime::NEVER);
+        clock.resume(at(231), PERIOD);
+        assert_eq!(clock.next(), at(231));
+        assert_eq!(clock.take_due(at(231), PERIOD), Wake::Timer(TimerId(1)));
+        assert_eq!(clock.next(), at(330));
+        clock.sleep();
+        clock.resume(at(330), PERIOD);
+        assert_eq!(clock.take_due(at(330), PERIOD), Wake::ControlStep);
     }
 
     #[test]

@@ -2,15 +2,16 @@
 
 use tokio_util::sync::CancellationToken;
 
-use super::air::Air;
+use super::air::{Air, Surroundings};
 use super::clock::WakeClock;
 use super::digest::Digest;
 use super::error::RunError;
 use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams};
+use crate::faults::{Change, Faults, Health, Subject};
 use crate::geometry::Vec2;
 use crate::metrics::{Progress, Recorder, RunEnd, TrialRecord};
 use crate::motion::World;
-use crate::protocol::{Input, Output, Protocol, Robot, Wake};
+use crate::protocol::{Input, Note, Output, Protocol, Robot, Wake};
 
 const ROBOT: Purpose = Purpose::new("protocol.robot");
 
@@ -18,6 +19,7 @@ const ROBOT: Purpose = Purpose::new("protocol.robot");
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Event {
     MotionTick,
+    Fault,
     Wake(ActorId),
     Sample,
     Observe,
@@ -27,9 +29,10 @@ impl EventKey for Event {
     fn class(&self) -> u8 {
         match self {
             Self::MotionTick => 0,
-            Self::Wake(_) => 1,
-            Self::Sample => 2,
-            Self::Observe => 3,
+            Self::Fault => 1,
+            Self::Wake(_) => 2,
+            Self::Sample => 3,
+            Self::Observe => 4,
         }
     }
 }
@@ -62,6 +65,8 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     driver: D,
     world: World,
     air: Air<P>,
+    faults: Faults,
+    changes: Vec<Change>,
     recorder: Recorder,
     digest: Digest,
     clocks: Vec<WakeClock>,
@@ -79,16 +84,18 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
 
 impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     /// A run in which robot i first wakes at `first_steps[i]`.
+    #[allow(clippy::too_many_arguments)] // The parts of a run, each once.
     pub fn new(
         rhythm: Rhythm,
         driver: D,
         world: World,
         air: Air<P>,
+        faults: Faults,
         recorder: Recorder,
         streams: Streams,
         first_steps: &[SimTime],
     ) -> Self {
-        let mut queue = EventQueue::with_capacity(first_steps.len() + 3);
+        let mut queue = EventQueue::with_capacity(first_steps.len() + 4);
         queue.schedule(Event::MotionTick, SimTime::ZERO + world.tick());
         if rhythm.sample_interval > Span::ZERO {
             queue.schedule(Event::Sample, SimTime::ZERO);
@@ -99,12 +106,17 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         for (robot, &first) in first_steps.iter().enumerate() {
             queue.schedule(Event::Wake(ActorId(robot as u32)), first);
         }
+        if faults.next() < SimTime::NEVER {
+            queue.schedule(Event::Fault, faults.next());
+        }
         Self {
             rhythm,
             queue,
             driver,
             world,
             air,
+            faults,
+            changes: Vec::new(),
             recorder,
             digest: Digest::new(),
             clocks: first_steps.iter().map(|&first| WakeClock::new(first)).collect(),
@@ -136,6 +148,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                     self.world.advance();
                     self.queue.schedule(event, now + self.world.tick());
                 }
+                Event::Fault => self.suffer(now),
                 Event::Wake(_) => self.wake_all(now).await?,
                 Event::Sample => {
                     self.locate(now);
@@ -236,14 +249,22 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         self.digest.wake(now, robot, input, output);
         for note in output.notes.drain(..) {
             self.recorder.note(robot, &note);
+            if let Note::Role(role) = note {
+                self.faults.enter(now, robot, role.0);
+                self.plan_faults();
+            }
         }
         if let Some(velocity) = output.velocity {
             self.world.command(robot, velocity);
         }
-        if !output.broadcasts.is_empty() {
+        if !output.broadcasts.is_empty() && self.faults.health(robot).sends {
             let messages = output.broadcasts.drain(..);
+            let place = Surroundings {
+                world: &self.world,
+                faults: &self.faults,
+            };
             self.air
-                .broadcast(now, robot, messages, &self.world, &mut self.recorder, &mut self.digest)?;
+                .broadcast(now, robot, messages, place, &mut self.recorder, &mut self.digest)?;
         }
         if !output.timers.is_empty() {
             let clock = &mut self.clocks[robot.index()];
@@ -253,6 +274,50 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             self.queue.schedule(Event::Wake(robot), clock.next());
         }
         Ok(())
+    }
+
+    /// Lets robots and links fail and recover.
+    fn suffer(&mut self, now: SimTime) {
+        self.locate(now);
+        let mut changes = std::mem::take(&mut self.changes);
+        self.faults.advance(now, &self.positions, &mut changes);
+        for change in changes.drain(..) {
+            self.digest.fault(now, &change);
+            self.recorder.fault(now, &change);
+            if let Subject::Robot { robot, health, .. } = change.subject {
+                self.ail(now, robot, health);
+            }
+        }
+        self.changes = changes;
+        self.plan_faults();
+    }
+
+    /// From `now` on `robot` can do what its `health` allows.
+    fn ail(&mut self, now: SimTime, robot: ActorId, health: Health) {
+        self.air.set_hearing(now, robot, health.hears, &mut self.recorder);
+        let clock = &mut self.clocks[robot.index()];
+        let before = clock.next();
+        if self.rhythm.wake_on_reception {
+            clock.set_arrival(self.air.next_arrival(robot));
+        }
+        if health.acts {
+            clock.resume(now, self.rhythm.control_period);
+        } else {
+            clock.sleep();
+            self.world.command(robot, Vec2::zeros());
+        }
+        if clock.next() != before {
+            self.queue.schedule(Event::Wake(robot), clock.next());
+        }
+    }
+
+    fn plan_faults(&mut self) {
+        match self.faults.next() {
+            SimTime::NEVER => {
+                self.queue.cancel(&Event::Fault);
+            }
+            next => self.queue.schedule(Event::Fault, next),
+        }
     }
 
     /// Brings forward the wakes of robots that frames were just sent to.
