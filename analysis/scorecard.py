@@ -4,8 +4,8 @@
     python analysis/scorecard.py
 
 Reads results/ where `run_paper.py` has left all runs of a figure with all their trials, and brings
-results/paper/figures.json up to date with them; takes what is missing from that file as committed, which needs nothing but Python
-itself. Writes results/paper/scorecard.json.
+results/paper/figures.json up to date with them. Takes what is missing from that file as committed, which needs nothing
+but Python itself. Writes results/paper/scorecard.json.
 """
 
 from __future__ import annotations
@@ -49,7 +49,9 @@ def shown(value: Any) -> str:
     """A figure as text."""
     if value is None:
         return "–"
-    return f"{value:,.4g}" if isinstance(value, float) and abs(value) < 1000 else f"{value:,.0f}" if isinstance(value, (int, float)) else str(value)
+    if isinstance(value, str):
+        return value
+    return f"{value:,.4g}" if abs(value) < 1000 else f"{value:,.0f}"
 
 
 def entry(claim: dict[str, Any]) -> str:
@@ -66,7 +68,8 @@ def entry(claim: dict[str, Any]) -> str:
 def totals(card: list[dict[str, Any]]) -> str:
     """How many of each verdict, calibrated ones apart: they could not but agree."""
     predictions = [claim for claim in card if claim["kind"] == claims.PREDICTION]
-    counts = [f"{sum(claim['verdict'] == name for claim in predictions)} {name}" for name in (AGREES, DIFFERS, CANNOT_SAY)]
+    verdicts = [claim["verdict"] for claim in predictions]
+    counts = [f"{verdicts.count(name)} {name}" for name in (AGREES, DIFFERS, CANNOT_SAY)]
     fitted = [claim for claim in card if claim["kind"] == claims.CALIBRATED]
     return f"Of {len(predictions)} predictions: {', '.join(counts)}. {len(fitted)} more claims are what was fitted."
 

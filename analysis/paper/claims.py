@@ -64,22 +64,23 @@ def from_number(name: str, paper: float, ours: Estimate, kind: str = PREDICTION,
     return Claim(name, paper, rounded(ours["value"]), interval(ours), judged, kind, ours["n"], notes)
 
 
-def unsaid(name: str, paper: float | str, note: str) -> Claim:
+def unsaid(name: str, paper: float | str, note: str, kind: str = PREDICTION) -> Claim:
     """A claim that nothing here decides."""
-    return Claim(name, paper, None, None, verdict.CANNOT_SAY, note=note)
+    return Claim(name, paper, None, None, verdict.CANNOT_SAY, kind, note=note)
 
 
 def medians(figures: Section) -> Iterator[Claim]:
     """Median steps of the four configurations."""
     for label, paper in reference.completion().items():
-        name = f"median steps to completion, {label.replace('x', ' robots, links: ')}"
-        ours = figures.get("completion", {}).get(label)
+        name = (
+            f"median steps to completion, {label.replace('x', ' robots, ')} {'link' if label == LONE_LINK else 'links'}"
+        )
+        ours, kind = figures.get("completion", {}).get(label), CALIBRATED if label == LONE_LINK else PREDICTION
         if ours is None:
-            yield unsaid(name, paper, "not run")
+            yield unsaid(name, paper, "not run", kind)
             continue
-        fitted = label == LONE_LINK
-        note = f"max_speed {ours['run']['max_speed']} m/s fitted on this" if fitted else ""
-        yield from_number(name, paper, ours["median"], CALIBRATED if fitted else PREDICTION, note)
+        note = f"max_speed {ours['run']['max_speed']} m/s is fitted on this" if kind == CALIBRATED else ""
+        yield from_number(name, paper, ours["median"], kind, note)
 
 
 def reached(figures: Section) -> Iterator[Claim]:
@@ -130,13 +131,12 @@ def fault_medians(figures: Section) -> Iterator[Claim]:
     """Median steps at a share of 0.7."""
     for (robots, share), paper in reference.faults().items():
         name = f"median steps at a share of {share} fallible robots, {robots} robots, 2 links"
-        point = fault_curves(figures).get(robots, {}).get(share)
+        point, kind = fault_curves(figures).get(robots, {}).get(share), CALIBRATED if robots == "40" else PREDICTION
         if point is None:
-            yield unsaid(name, paper, "not run")
+            yield unsaid(name, paper, "not run", kind)
             continue
-        fitted = robots == "40"
-        note = "hazard 0.0003 a step fitted on this" if fitted else ""
-        yield from_number(name, paper, point["median"], CALIBRATED if fitted else PREDICTION, note)
+        note = "hazard 0.0003 a step is fitted on this" if kind == CALIBRATED else ""
+        yield from_number(name, paper, point["median"], kind, note)
 
 
 def per_swarm(
@@ -260,12 +260,12 @@ def _least_values(of: list[Estimate]) -> str:
 
 def bandwidth_numbers(figures: Section) -> Iterator[Claim]:
     """Least, most and median bytes, at face value: sent or received, with headers."""
-    paper, runs = reference.bandwidth(), figures.get("bandwidth")
+    paper, runs, keys = reference.bandwidth(), figures.get("bandwidth"), ("min", "max", "median")
     for reading in MAIN_READINGS:
         names = [f"bytes a step, {statistic}, {reading}" for statistic in ("least of 10 robots", "most of 100 robots")]
         names.append(f"bytes a step, median of every configuration, {reading}")
         if not runs:
-            yield from (unsaid(name, paper[key], "not run") for name, key in zip(names, ("min", "max", "median")))
+            yield from (unsaid(name, paper[key], "not run") for name, key in zip(names, keys, strict=True))
             continue
         yield from_number(names[0], paper["min"], runs["10"]["readings"][reading]["of_a_trial"]["min"])
         yield from_number(names[1], paper["max"], runs["100"]["readings"][reading]["of_a_trial"]["max"])
@@ -278,7 +278,8 @@ def _every_median(name: str, paper: float, readings: list[Section]) -> Claim:
     judged = verdict.every([verdict.number(each, paper, 2 * verdict.MARGIN) for each in of])
     span = estimate(None, min(values), max(values), of[0]["n"])
     note = "least and greatest of ten medians; the margin is doubled, the paper says about"
-    return Claim(name, paper, f"{min(values):.3g} to {max(values):.3g}", interval(span), judged, trials=span["n"], note=note)
+    found = f"{min(values):,.3g} to {max(values):,.3g}"
+    return Claim(name, paper, found, interval(span), judged, trials=span["n"], note=note)
 
 
 def nearest_reading(figures: Section) -> Iterator[Claim]:
@@ -297,7 +298,8 @@ def nearest_reading(figures: Section) -> Iterator[Claim]:
 def misfit(runs: Section, reading: str) -> float:
     """The largest factor between a reading and the paper: least of 10 robots, most of 100, median of each."""
     paper = reference.bandwidth()
-    pairs = [(runs["10"]["readings"][reading]["min"], paper["min"]), (runs["100"]["readings"][reading]["max"], paper["max"])]
+    few, many = (runs[robots]["readings"][reading] for robots in ("10", "100"))
+    pairs = [(few["min"], paper["min"]), (many["max"], paper["max"])]
     pairs += [(run["readings"][reading]["median"], paper["median"]) for run in runs.values()]
     return max(max(ours / theirs, theirs / ours) if ours > 0 else math.inf for ours, theirs in pairs)
 

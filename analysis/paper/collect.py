@@ -127,7 +127,9 @@ def targets(config: Section) -> list[list[float]]:
 
 def connectivity(results: Path) -> Section:
     """λ₂ over time, while all trials run: their median and the band of the middle four fifths."""
-    return {item.label: _connectivity(item.robots, item.links, Folder(results / item.run.name)) for item in CONNECTIVITY}
+    return {
+        item.label: _connectivity(item.robots, item.links, Folder(results / item.run.name)) for item in CONNECTIVITY
+    }
 
 
 def _connectivity(robots: int, links: int, folder: Folder) -> Section:

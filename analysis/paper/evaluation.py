@@ -89,7 +89,7 @@ def fault_name(robots: int, share: int) -> str:
 
 
 def fallible(robots: int, share: int) -> FaultRun:
-    """The paper's faults, as `REFERENCE` of the hazard has them."""
+    """The paper's failures as desim reads them, with the fitted hazard."""
     return FaultRun(robots, share, "Fallible", HAZARD, shipped(fault_name(robots, share)))
 
 

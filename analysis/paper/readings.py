@@ -105,25 +105,24 @@ MAIN = ("sent, with headers", "received, with headers")
 
 def per_robot(rows: pl.DataFrame, trials: pl.DataFrame) -> list[list[float]]:
     """Bytes a control step of every robot, trial by trial; a robot without rows has 0."""
-    sums = dict((((trial, robot), size) for trial, robot, size in _sums(rows)))
+    grouped = rows.group_by("trial", "robot").agg(pl.col("bytes").sum())
+    sums = {(trial, robot): size for trial, robot, size in grouped.iter_rows()}
     every = trials.select("trial", "robots", "steps").iter_rows()
-    return [[sums.get((trial, robot), 0.0) / max(steps, 1) for robot in range(robots)] for trial, robots, steps in every]
-
-
-def _sums(rows: pl.DataFrame):  # type: ignore[no-untyped-def]
-    return rows.group_by("trial", "robot").agg(pl.col("bytes").sum()).sort("trial", "robot").iter_rows()
+    return [
+        [sums.get((trial, robot), 0.0) / max(steps, 1) for robot in range(robots)] for trial, robots, steps in every
+    ]
 
 
 def by_topic(rows: pl.DataFrame, trials: pl.DataFrame) -> dict[str, float]:
     """Mean bytes a robot and control step of each topic; both strands are one, as in the paper."""
     whole = float((trials["robots"] * trials["steps"]).sum())
-    named = rows.with_columns(pl.when(pl.col("topic").is_in(STRANDS)).then(pl.lit("strand")).otherwise("topic").alias("topic"))
-    sums = named.group_by("topic").agg(pl.col("bytes").sum()).sort("topic").iter_rows()
+    topic = pl.when(pl.col("topic").is_in(STRANDS)).then(pl.lit("strand")).otherwise("topic").alias("topic")
+    sums = rows.group_by(topic).agg(pl.col("bytes").sum()).sort("topic").iter_rows()
     return {topic: size / whole for topic, size in sums}
 
 
 def neighbours(bandwidth: pl.DataFrame) -> float:
     """Robots that hear a status, on average."""
     status = bandwidth.filter(topic="status")
-    heard = status.filter(direction="rx")["frames"].sum()
-    return heard / status.filter(direction="tx")["frames"].sum()
+    heard, sent = (float(status.filter(direction=direction)["frames"].sum()) for direction in ("rx", "tx"))
+    return heard / sent

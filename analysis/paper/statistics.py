@@ -7,7 +7,7 @@ not exist. Intervals are 95 %.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from statistics import NormalDist
 from typing import TypedDict
 
@@ -93,7 +93,7 @@ def _reach(a: float, a_end: float | None, b: float, b_end: float | None) -> floa
     return None if a_end is None or b_end is None else math.hypot(a - a_end, b - b_end)
 
 
-def _mapped(given: Estimate, function) -> Estimate:  # type: ignore[no-untyped-def]
+def _mapped(given: Estimate, function: Callable[[float], float]) -> Estimate:
     low, high = (None if end is None else function(end) for end in given["ci95"])
     value = None if given["value"] is None else function(given["value"])
     return estimate(value, low, high, given["n"])

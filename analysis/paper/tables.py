@@ -43,7 +43,8 @@ def with_interval(given: Estimate, digits: int = 0, scale: float = 1.0) -> str:
 
 def completion(runs: Section) -> str:
     """Steps and optimum."""
-    head = ["robots", "links", "completed", "median steps", "paper", "optimum", "best assignment", "after the hold", "used"]
+    steps = ["median steps", "paper", "optimum", "best assignment", "after the hold"]
+    head = ["robots", "links", "completed", *steps, "robots used"]
     paper = reference.completion()
     rows = [
         [
@@ -99,7 +100,8 @@ def spread(reading: Section) -> str:
 
 def readings(runs: Section) -> str:
     """Each way to count against the paper's three numbers."""
-    head = ["reading", "least, 10 robots (17)", "medians (about 100)", "most, 100 robots (174)", "worst factor", "order of topics, 100 robots"]
+    numbers = ["least, 10 robots (17)", "medians (about 100)", "most, 100 robots (174)", "worst factor"]
+    head = ["reading", *numbers, "mean bytes by topic, 100 robots"]
     rows = []
     for reading in sorted(runs["10"]["readings"], key=lambda name: misfit(runs, name)):
         of = {robots: run["readings"][reading] for robots, run in runs.items()}
@@ -113,7 +115,8 @@ def readings(runs: Section) -> str:
 
 def faults(curves: Section, title: str = "Failures: the paper's reading, hazard 0.0003") -> str:
     """Steps, failed missions and failures by share."""
-    head = ["faults", "robots", "share", "completed", "median steps", "failed missions, %", "failed robots", "connected, %"]
+    counts = ["completed", "median steps", "failed missions, %", "failed robots", "connected, %"]
+    head = ["faults", "robots", "share", *counts]
     rows = [
         [
             name,

@@ -5,7 +5,8 @@ fitted speed has two digits. So a number of the paper **agrees** if it lies in o
 the number, **differs** if it lies outside, and we **cannot say** if our interval is open or wider than it could tell.
 
 5 % is the sum of what no trial of ours can remove: 2 % for the two digits of the speed (0.026 m/s; time goes with its
-inverse), 1 to 2 % for the sampling error of the paper's own median (what ours have with as many trials), 1 % for "about".
+inverse), 1 to 2 % for the sampling error of the paper's own median (what ours have with as many trials), 1 % for the
+paper's "about".
 
 A statement in words is put as a difference or ratio with its interval. It **agrees** if the whole interval is on the
 side that the statement names, **differs** if none of it is, and else we **cannot say**.

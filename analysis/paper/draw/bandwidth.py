@@ -12,6 +12,7 @@ from matplotlib.ticker import ScalarFormatter
 from .. import reference
 from . import style
 
+MEDIANS: style.Look = {"color": style.OURS, "linewidth": 5, "alpha": 0.6, "solid_capstyle": "butt"}
 SERIES = {"with headers": (style.OURS, "o", -1.2), "payload": (style.OTHER, "s", 1.2)}
 
 
@@ -33,10 +34,10 @@ def draw(runs: dict[str, Any], path: Path) -> None:
 def bars(axes: Axes, runs: dict[str, Any], reading: str, colour: str, marker: str, offset: float, label: str) -> None:
     """Least, median, most by number of robots."""
     of = {int(robots) + offset: run["readings"][reading] for robots, run in runs.items()}
-    axes.vlines(list(of), [each["min"] for each in of.values()], [each["max"] for each in of.values()], color=colour, linewidth=1)
-    for end in ("min", "max"):
-        axes.plot(list(of), [each[end] for each in of.values()], color=colour, marker="_", linestyle="none", markersize=5)
-    middle = [each["median"] for each in of.values()]
+    low, middle, high = ([each[key] for each in of.values()] for key in ("min", "median", "max"))
+    axes.vlines(list(of), low, high, color=colour, linewidth=1)
+    for end in (low, high):
+        axes.plot(list(of), end, color=colour, marker="_", linestyle="none", markersize=5)
     axes.plot(list(of), middle, color=colour, marker=marker, markersize=4, linewidth=1, label=label)
 
 
@@ -55,19 +56,23 @@ def draw_readings(runs: dict[str, Any], path: Path) -> None:
     for row, reading in enumerate(reversed(readings)):
         of = {robots: run["readings"][reading] for robots, run in runs.items()}
         medians = [each["median"] for each in of.values()]
-        axes.plot([min(medians), max(medians)], [row, row], color=style.OURS, linewidth=5, alpha=0.6, solid_capstyle="butt")
+        axes.plot([min(medians), max(medians)], [row, row], **MEDIANS)
         axes.plot(of["10"]["min"], row, color=style.THIRD, marker="<", linestyle="none")
         axes.plot(of["100"]["max"], row, color=style.OTHER, marker=">", linestyle="none")
-    for value, colour in zip((paper["min"], paper["median"], paper["max"]), (style.THIRD, style.OURS, style.OTHER), strict=True):
-        axes.axvline(value, color=colour, linewidth=1, linestyle="--", zorder=0)
-        axes.text(value, len(readings) - 0.4, f"{value:.0f}", color=colour, ha="center", va="bottom", fontsize=8)
+    for key, colour, side in (
+        ("min", style.THIRD, "center"),
+        ("median", style.OURS, "right"),
+        ("max", style.OTHER, "left"),
+    ):
+        axes.axvline(paper[key], color=colour, linewidth=1, linestyle="--", zorder=0)
+        axes.text(paper[key], len(readings) - 0.4, f"{paper[key]:.0f}", color=colour, ha=side, va="bottom", fontsize=8)
     axes.set_yticks(range(len(readings)), list(reversed(readings)))
     axes.set(xscale="log", xlabel="bytes a control step of a robot", ylim=(-0.6, len(readings) - 0.4))
     axes.xaxis.set_major_formatter(ScalarFormatter())
     axes.grid(visible=False)
     handles = [
         axes.plot([], [], color=style.THIRD, marker="<", linestyle="none", label="least, 10 robots")[0],
-        axes.plot([], [], color=style.OURS, linewidth=5, alpha=0.6, label="medians, 10 to 100 robots")[0],
+        axes.plot([], [], **MEDIANS, label="medians, 10 to 100 robots")[0],
         axes.plot([], [], color=style.OTHER, marker=">", linestyle="none", label="most, 100 robots")[0],
         axes.plot([], [], color="black", linewidth=1, linestyle="--", label="paper")[0],
     ]

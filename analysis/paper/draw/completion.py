@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,7 @@ def draw(runs: dict[str, Any], path: Path) -> None:
     boxes(axes, [x + 0.21 for x in at], optima, style.GREY, "optimum of the same trials")
     paper = reference.completion()
     axes.plot([x - 0.21 for x in at], [paper[label] for label in runs], **style.PAPER, label="paper, median")
-    names = [f"{run['robots']} robots\n{run['links']} {'link' if run['links'] == 1 else 'links'}" for run in runs.values()]
-    axes.set_xticks(list(at), names)
+    axes.set_xticks(list(at), [f"{run['robots']} robots\n{style.links(run['links'])}" for run in runs.values()])
     axes.set(ylabel="control steps to completion", xlim=(0.5, len(runs) + 0.5))
     axes.legend(loc="upper right")
     style.save(figure, path)
@@ -32,7 +32,7 @@ def completed(steps: list[int | None]) -> list[int]:
     return [step for step in steps if step is not None]
 
 
-def boxes(axes: Any, at: list[float], values: list[list[float]], colour: str, label: str) -> None:
+def boxes(axes: Any, at: list[float], values: Sequence[Sequence[float]], colour: str, label: str) -> None:
     """Boxes with whiskers to the least and the greatest trial: with 35 trials nobody needs to be an outlier."""
     drawn = axes.boxplot(
         values,

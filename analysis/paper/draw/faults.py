@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +30,7 @@ def draw_time(curves: dict[str, Curve], path: Path) -> None:
         spreads = [spread(point) for point in curve.values()]
         for x, (low, _, high) in zip(shares, spreads, strict=True):
             bar(axes, x, low, min(high, limit), censored=high > limit, colour=colour)
-        middle = [median if median <= limit else None for _, median, _ in spreads]
+        middle = [median if median <= limit else math.nan for _, median, _ in spreads]
         axes.plot(shares, middle, color=colour, marker=marker, markersize=5, linewidth=1.2, label=f"{robots} robots")
     points = [(float(share) + LOOKS[robots][2], steps) for (robots, share), steps in reference.faults().items()]
     axes.plot([x for x, _ in points], [y for _, y in points], **style.PAPER, label="paper, medians at 0.7")
@@ -75,7 +76,14 @@ def failed_line(axes: Axes, curve: Curve, offset: float, colour: str, marker: st
     values = [100 * ratio["value"] for ratio in ratios]
     below = [max(100 * (ratio["value"] - ratio["ci95"][0]), 0) for ratio in ratios]
     above = [max(100 * (ratio["ci95"][1] - ratio["value"]), 0) for ratio in ratios]
-    look = {"color": colour, "marker": marker, "markersize": 5, "linewidth": 1.2, "elinewidth": 0.9, "capsize": 2.5}
+    look: style.Look = {
+        "color": colour,
+        "marker": marker,
+        "markersize": 5,
+        "linewidth": 1.2,
+        "elinewidth": 0.9,
+        "capsize": 2.5,
+    }
     axes.errorbar(shares, values, yerr=(below, above), label=label, **look)
 
 
@@ -83,7 +91,9 @@ def draw_sensitivity(curves: dict[str, dict[str, Curve]], path: Path) -> None:
     """Median steps and failed missions by hazard and for the harsher reading, 40 robots beside 80."""
     figure, grid = plt.subplots(2, 2, figsize=(7.2, 5.2), layout="constrained", sharex=True, sharey="row")
     for column, robots in enumerate(LOOKS):
-        for number, (name, by_robots) in enumerate(sorted(curves.items(), key=lambda item: (len(item[0]) < 9, item[0]))):
+        for number, (name, by_robots) in enumerate(
+            sorted(curves.items(), key=lambda item: (len(item[0]) < 9, item[0]))
+        ):
             if robots not in by_robots:
                 continue
             colour, marker = style.LINES[number % len(style.LINES)], "osD^v"[number % 5]

@@ -13,13 +13,13 @@ from matplotlib.lines import Line2D
 
 from . import style
 
-LOOKS = {
+LOOKS: dict[str, style.Look] = {
     "free": {"marker": "o", "color": "#6b6b6b", "markerfacecolor": "white", "markersize": 3.2},
     "networker": {"marker": "o", "color": "#0072b2", "markersize": 4},
     "worker": {"marker": "^", "color": "#d55e00", "markersize": 6},
     "root": {"marker": "s", "color": "#000000", "markersize": 5},
 }
-TARGET = {"marker": "x", "color": "#c00000", "markersize": 7, "markeredgewidth": 1.4}
+TARGET: style.Look = {"marker": "x", "color": "#c00000", "markersize": 7, "markeredgewidth": 1.4}
 LINK, CHAIN = "#3fae49", "#444444"
 Line = tuple[list[float], list[float]]
 
@@ -28,9 +28,8 @@ def draw(runs: dict[str, Any], path: Path) -> None:
     """Four arenas, and one legend for all."""
     figure, grid = plt.subplots(2, 2, figsize=(7.2, 7.7), layout="constrained")
     for letter, axes, (_, run) in zip("abcd", grid.flat, runs.items(), strict=False):
-        links = "1 link" if run["links"] == 1 else f"{run['links']} links"
         arena(axes, run["final"])
-        axes.set_title(f"({letter}) {run['robots']} robots, {links}", fontsize=9)
+        axes.set_title(f"({letter}) {run['robots']} robots, {style.links(run['links'])}", fontsize=9)
     figure.legend(handles=legend(), loc="outside lower center", ncols=4)
     style.save(figure, path)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -16,7 +17,16 @@ COLUMN = (5.6, 3.6)
 """Inches. Text of 9 points stays readable when this is shrunk to a column of 3.4 inches."""
 OURS, OTHER, THIRD, GREY = "#0072b2", "#d55e00", "#009e73", "#6b6b6b"
 """Okabe and Ito's colours, which colour-blind readers tell apart."""
-PAPER = {"color": "#000000", "marker": "D", "markerfacecolor": "white", "linestyle": "none", "markersize": 6, "zorder": 5}
+Look = dict[str, Any]
+"""What matplotlib is told about a line or a marker."""
+PAPER: Look = {
+    "color": "#000000",
+    "marker": "D",
+    "markerfacecolor": "white",
+    "linestyle": "none",
+    "markersize": 6,
+    "zorder": 5,
+}
 """The paper's own numbers are the same hollow diamond in every figure."""
 LINES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000")
 
@@ -43,6 +53,11 @@ def setup() -> None:
 def axes(size: tuple[float, float] = COLUMN) -> tuple[Figure, Axes]:
     """A figure with one pair of axes."""
     return plt.subplots(figsize=size, layout="constrained")
+
+
+def links(number: int) -> str:
+    """So many links in words."""
+    return "1 link" if number == 1 else f"{number} links"
 
 
 def save(figure: Figure, path: Path) -> None:
