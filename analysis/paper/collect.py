@@ -15,7 +15,18 @@ from typing import Any
 import polars as pl
 
 from . import optimal, readings
-from .evaluation import BANDWIDTH, COMPLETION, CONNECTIVITY, FAULTS, SENSITIVITY, TRIALS, FaultRun, Run
+from .evaluation import (
+    BANDWIDTH,
+    COMPLETION,
+    CONNECTIVITY,
+    DEPLOYMENT,
+    FAULTS,
+    NEEDED,
+    SENSITIVITY,
+    TRIALS,
+    FaultRun,
+    Run,
+)
 from .folder import Folder
 from .statistics import median, quantile, wilson
 
@@ -44,6 +55,13 @@ def collect(results: Path, known: Section) -> tuple[Section, dict[str, str]]:
 def completion(results: Path) -> Section:
     """The four configurations: steps, the optimum, and where the robots of trial 0 ended."""
     return {item.label: _completion(item.robots, item.links, Folder(results / item.run.name)) for item in COMPLETION}
+
+
+def deployment(results: Path) -> Section:
+    """The four configurations from equally wide deployments: steps and optimum."""
+    kept = ("run", "robots", "links", "completed", "median", "steps", "optimum", "robots_used")
+    of = {item.label: _completion(item.robots, item.links, Folder(results / item.run.name)) for item in DEPLOYMENT}
+    return {label: {key: run[key] for key in kept} for label, run in of.items()}
 
 
 def _completion(robots: int, links: int, folder: Folder) -> Section:
@@ -213,6 +231,7 @@ def _fault_curves(results: Path, points: Iterable[FaultRun]) -> Section:
 
 def _fault_point(folder: Folder) -> Section:
     trials, completed = len(folder.trials), folder.summary["completed"]
+    failed = failures(folder)
     return {
         "run": folder.provenance(),
         "trials": trials,
@@ -223,7 +242,8 @@ def _fault_point(folder: Folder) -> Section:
         "limit": folder.limit,
         "connected_share": folder.summary["connected_share"],
         "lambda2_min": folder.summary["lambda2_min"],
-        "failures": failures(folder),
+        "failures": failed,
+        "failed_though_enough": None if failed is None else failed_though_enough(folder, failed),
     }
 
 
@@ -236,12 +256,20 @@ def failures(folder: Folder) -> list[int] | None:
     return [counts.get(trial, 0) for trial in folder.trials["trial"]]
 
 
+def failed_though_enough(folder: Folder, failed: list[int]) -> list[int]:
+    """The trials that did not complete though as many robots as a backbone needs were left."""
+    robots = folder.scenario["swarm"]["robots"]
+    pairs = zip(folder.steps(), failed, strict=True)
+    return [trial for trial, (steps, lost) in enumerate(pairs) if steps is None and robots - lost >= NEEDED]
+
+
 def _runs(items: Iterable[Any]) -> tuple[Run, ...]:
     return tuple(item.run for item in items)
 
 
 SECTIONS: dict[str, tuple[tuple[Run, ...], Callable[[Path], Section]]] = {
     "completion": (_runs(COMPLETION), completion),
+    "deployment": (_runs(DEPLOYMENT), deployment),
     "connectivity": (_runs(CONNECTIVITY), connectivity),
     "bandwidth": (tuple(run for _, run in BANDWIDTH), bandwidth),
     "faults": (_runs(FAULTS), faults),

@@ -6,7 +6,7 @@ Nothing is read here. `run_paper.py` runs this list, `collect.py` looks for its 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -23,6 +23,8 @@ HAZARDS = (0.0002, 0.0004, 0.0005)
 """The other hazards that are tried."""
 TRIED_SHARES = (20, 50, 70, 90)
 """Shares at which other hazards and readings are tried, per cent."""
+NEEDED = 21
+"""Robots of a backbone with 2 links to four targets 4.5 m out: the root, and for each target a worker and 2 × 2 relays."""
 ON_JOIN_WINDOW = 100.0
 """Seconds after joining within which `OnJoin` strikes: about the time that a chain takes to grow."""
 
@@ -61,6 +63,18 @@ COMPLETION = tuple(
     Completion(f"{robots}x{links}", robots, links, shipped(f"completion_{robots}x{links}"))
     for robots, links in ((20, 1), (40, 2), (60, 3), (80, 4))
 )
+SAME_RADIUS = 0.95
+"""Metres: a deployment that 20 robots and 80 (the least for them is 0.88) can share."""
+
+
+def same_deployment(item: Completion) -> Completion:
+    """A configuration whose cluster does not widen with the number of robots."""
+    run = Run(f"{item.run.name}_r095", item.run.scenario, (f"swarm.deploy=Cluster(radius: {SAME_RADIUS})",))
+    return replace(item, run=run)
+
+
+DEPLOYMENT = tuple(same_deployment(item) for item in COMPLETION)
+"""What is left of the falling trend if deployments are equally wide, not equally dense."""
 CONNECTIVITY = (*COMPLETION, Completion("100x4", 100, 4, shipped("bandwidth_100")))
 """The paper draws five configurations and does not name them: its four, and the largest swarm that it mentions."""
 
@@ -118,6 +132,7 @@ def sets() -> dict[str, tuple[Run, ...]]:
     """Every run, by the figure that asks for it."""
     return {
         "completion": tuple(configuration.run for configuration in COMPLETION),
+        "deployment": tuple(configuration.run for configuration in DEPLOYMENT),
         "bandwidth": tuple(run for _, run in BANDWIDTH),
         "connectivity": tuple(configuration.run for configuration in CONNECTIVITY),
         "faults": tuple(point.run for point in FAULTS),

@@ -41,7 +41,7 @@ def with_interval(given: Estimate, digits: int = 0, scale: float = 1.0) -> str:
     return f"{plain(value, digits)} [{plain(low, digits)}, {plain(high, digits)}]"
 
 
-def completion(runs: Section) -> str:
+def completion(runs: Section, title: str = "Time to completion") -> str:
     """Steps and optimum."""
     steps = ["median steps", "paper", "optimum", "best assignment", "after the hold"]
     head = ["robots", "links", "completed", *steps, "robots used"]
@@ -58,7 +58,12 @@ def completion(runs: Section) -> str:
         ]
         for label, run in runs.items()
     ]
-    return table("Time to completion", head, rows)
+    return table(title, head, rows)
+
+
+def deployment(runs: Section) -> str:
+    """The same from equally wide deployments."""
+    return completion(runs, "Time to completion, all deployments 0.95 m wide")
 
 
 def connectivity(runs: Section) -> str:
@@ -115,7 +120,7 @@ def readings(runs: Section) -> str:
 
 def faults(curves: Section, title: str = "Failures: the paper's reading, hazard 0.0003") -> str:
     """Steps, failed missions and failures by share."""
-    counts = ["completed", "median steps", "failed missions, %", "failed robots", "connected, %"]
+    counts = ["completed", "median steps", "failed missions, %", "failed robots", "failed, enough left", "connected, %"]
     head = ["faults", "robots", "share", *counts]
     rows = [
         [
@@ -126,6 +131,7 @@ def faults(curves: Section, title: str = "Failures: the paper's reading, hazard 
             with_interval(point["median"]),
             with_interval(point["failed_ratio"], 0, 100),
             "–" if point["failures"] is None else plain(sum(point["failures"]) / len(point["failures"]), 1),
+            "–" if point["failed_though_enough"] is None else str(len(point["failed_though_enough"])),
             with_interval(point["connected_share"], 1, 100),
         ]
         for name, by_robots in curves.items()
@@ -142,6 +148,7 @@ def sensitivity(curves: Section) -> str:
 
 TABLES: dict[str, Callable[[Section], str]] = {
     "completion": completion,
+    "deployment": deployment,
     "faults": faults,
     "sensitivity": sensitivity,
     "connectivity": connectivity,

@@ -35,10 +35,10 @@ def draw_time(curves: dict[str, Curve], path: Path) -> None:
     points = [(float(share) + LOOKS[robots][2], steps) for (robots, share), steps in reference.faults().items()]
     axes.plot([x for x, _ in points], [y for _, y in points], **style.PAPER, label="paper, medians at 0.7")
     axes.axhline(limit, color=style.GREY, linewidth=0.8, linestyle=":")
-    axes.text(-0.04, limit, "given up", fontsize=7, color=style.GREY, va="bottom")
+    axes.text(0.25, limit, "given up", fontsize=7, color=style.GREY, ha="center", va="bottom")
     axes.set(xlabel="share of fallible robots", ylabel="control steps to completion", ylim=(0, limit * 1.09))
     axes.set_xticks([share / 10 for share in range(10)])
-    axes.legend(loc="upper left", bbox_to_anchor=(0, 0.96))
+    axes.legend(loc="upper left", bbox_to_anchor=(0, 0.92))
     style.save(figure, path)
 
 
@@ -76,37 +76,30 @@ def failed_line(axes: Axes, curve: Curve, offset: float, colour: str, marker: st
     values = [100 * ratio["value"] for ratio in ratios]
     below = [max(100 * (ratio["value"] - ratio["ci95"][0]), 0) for ratio in ratios]
     above = [max(100 * (ratio["ci95"][1] - ratio["value"]), 0) for ratio in ratios]
-    look: style.Look = {
-        "color": colour,
-        "marker": marker,
-        "markersize": 5,
-        "linewidth": 1.2,
-        "elinewidth": 0.9,
-        "capsize": 2.5,
-    }
-    axes.errorbar(shares, values, yerr=(below, above), label=label, **look)
+    look: style.Look = {"color": colour, "marker": marker, "markersize": 5, "linewidth": 1.2}
+    axes.errorbar(shares, values, yerr=(below, above), label=label, elinewidth=0.9, capsize=2.5, **look)
 
 
 def draw_sensitivity(curves: dict[str, dict[str, Curve]], path: Path) -> None:
     """Median steps and failed missions by hazard and for the harsher reading, 40 robots beside 80."""
     figure, grid = plt.subplots(2, 2, figsize=(7.2, 5.2), layout="constrained", sharex=True, sharey="row")
-    for column, robots in enumerate(LOOKS):
-        for number, (name, by_robots) in enumerate(
-            sorted(curves.items(), key=lambda item: (len(item[0]) < 9, item[0]))
-        ):
-            if robots not in by_robots:
-                continue
-            colour, marker = style.LINES[number % len(style.LINES)], "osD^v"[number % 5]
-            curve, offset = by_robots[robots], (number - 2) * 0.006
-            medians = [point["median"]["value"] for point in curve.values()]
-            shares = [float(share) + offset for share in curve]
-            label = name.replace("Fallible", "hazard")
-            grid[0][column].plot(shares, medians, color=colour, marker=marker, markersize=4, linewidth=1.1, label=label)
-            failed_line(grid[1][column], curve, offset, colour, marker, label)
-        grid[0][column].set_title(f"{robots} robots, 2 links", fontsize=9)
-        grid[1][column].set_xlabel("share of fallible robots (OnJoin: probability)")
+    for robots, (above, below) in zip(LOOKS, grid.T, strict=True):
+        for number, name in enumerate(sorted(curves)):
+            hazard_line(above, below, curves[name][robots], number, name.replace("Fallible", "hazard"))
+        above.set_title(f"{robots} robots, 2 links", fontsize=9)
+        below.set_xlabel("share of fallible robots (OnJoin: probability)")
     grid[0][0].set_ylabel("median control steps")
     grid[1][0].set(ylabel="failed missions, %", ylim=(-3, 103))
-    handles, labels = grid[0][0].get_legend_handles_labels()
+    handles, labels = grid[1][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=5)
     style.save(figure, path)
+
+
+def hazard_line(above: Axes, below: Axes, curve: Curve, number: int, label: str) -> None:
+    """One hazard: medians above, failed missions below; a median that half of the trials did not reach is left out."""
+    shares = [float(share) + (number - 2) * 0.006 for share in curve]
+    medians = [math.nan if point["median"]["value"] is None else point["median"]["value"] for point in curve.values()]
+    failed = [100 * point["failed_ratio"]["value"] for point in curve.values()]
+    look: style.Look = {"color": style.LINES[number], "marker": "osD^v"[number], "markersize": 4, "linewidth": 1.1}
+    above.plot(shares, medians, **look)
+    below.plot(shares, failed, **look, label=label)
