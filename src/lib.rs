@@ -48,7 +48,7 @@
 //!
 //! # What happens in which order
 //!
-//! - Time is whole nanoseconds. At one instant: the motion tick, then robot wakes, then samples.
+//! - Time is whole nanoseconds. At one instant: the motion tick, then faults, then robot wakes, then samples.
 //! - Robots that wake at one instant all see the world as it was before any of them acted. Their answers take effect in
 //!   the order of their wakes, which is first-in-first-out.
 //! - A robot that wakes at t has in its inbox what arrived up to and including t, by time of arrival.
@@ -62,7 +62,7 @@
 //!
 //! # The floors
 //!
-//! [`engine`], [`geometry`] and [`quantity`] know no robots; [`radio`], [`motion`] and [`protocol`] are pure models that do
+//! [`engine`], [`geometry`] and [`quantity`] know no robots; [`radio`], [`motion`], [`protocol`] and [`faults`] are pure models that do
 //! not know each other; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
 //! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
 
@@ -70,6 +70,7 @@ pub mod cli;
 pub mod engine;
 pub mod experiment;
 pub mod export;
+pub mod faults;
 pub mod geometry;
 pub mod metrics;
 pub mod motion;

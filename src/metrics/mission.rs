@@ -5,6 +5,7 @@ use crate::geometry::Vec2;
 use crate::protocol::Role;
 
 use super::connectivity::Chains;
+use super::faults::Failures;
 use super::reports::Reports;
 
 /// What the swarm is asked to do (paper section 3.3): hold every target, with so many chains to the root.
@@ -52,15 +53,17 @@ pub enum Progress {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scene<'a> {
     reports: &'a Reports,
+    failures: &'a Failures,
     positions: &'a [Vec2],
     radio_range: f64,
 }
 
 impl<'a> Scene<'a> {
-    /// What robots have reported, where they are, and how far their radios carry, in metres.
-    pub(super) fn new(reports: &'a Reports, positions: &'a [Vec2], radio_range: f64) -> Self {
+    /// What robots have reported, which have failed, where they are, and how far their radios carry, in metres.
+    pub(super) fn new(reports: &'a Reports, failures: &'a Failures, positions: &'a [Vec2], radio_range: f64) -> Self {
         Self {
             reports,
+            failures,
             positions,
             radio_range,
         }
@@ -70,9 +73,13 @@ impl<'a> Scene<'a> {
         (self.positions[a.index()] - self.positions[b.index()]).norm()
     }
 
+    fn are_live(&self, a: ActorId, b: ActorId) -> bool {
+        self.failures.is_live(a) && self.failures.is_live(b)
+    }
+
     fn chains(&self, root: ActorId) -> Chains {
         Chains::new(&self.reports.parents, root, |child, parent| {
-            self.apart(child, parent) <= self.radio_range
+            self.are_live(child, parent) && self.apart(child, parent) <= self.radio_range
         })
     }
 }
@@ -112,11 +119,11 @@ impl Mission {
             .reports
             .working_for(target, self.worker_role)
             .filter(|robot| (scene.positions[robot.index()] - position).norm() <= self.reach)
-            .filter(|&robot| self.near_parents(robot, scene) >= links as usize)
+            .filter(|&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
             .collect()
     }
 
-    /// Distinct parents of `robot` within d_c of it.
+    /// Distinct live parents of `robot`, live itself, within d_c of it.
     fn near_parents(&self, robot: ActorId, scene: Scene) -> usize {
         let named = &scene.reports.parents[robot.index()];
         let distinct = named
@@ -124,7 +131,7 @@ impl Mission {
             .enumerate()
             .filter(|(i, parent)| !named[..*i].contains(parent));
         distinct
-            .filter(|&(_, &parent)| scene.apart(robot, parent) <= self.link_limit)
+            .filter(|&(_, &parent)| scene.are_live(robot, parent) && scene.apart(robot, parent) <= self.link_limit)
             .count()
     }
 }
@@ -188,6 +195,7 @@ mod tests {
     /// One target two hops out on the x axis: robot 0 is the root, 3 the worker, 1 and 2 relay side by side.
     struct Stage {
         reports: Reports,
+        failures: Failures,
         positions: Vec<Vec2>,
     }
 
@@ -207,11 +215,16 @@ mod tests {
             let positions = [(0.0, 0.0), (1.5, 0.5), (1.5, -0.5), (3.0, 0.0)]
                 .map(|(x, y)| Vec2::new(x, y))
                 .to_vec();
-            Self { reports, positions }
+            let failures = Failures::new(4);
+            Self {
+                reports,
+                failures,
+                positions,
+            }
         }
 
         fn scene(&self) -> Scene<'_> {
-            Scene::new(&self.reports, &self.positions, 2.0)
+            Scene::new(&self.reports, &self.failures, &self.positions, 2.0)
         }
 
         fn accomplishes(&self, mission: &Mission) -> bool {

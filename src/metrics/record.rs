@@ -5,6 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
+use crate::faults::Effect;
 use crate::geometry::Pose;
 use crate::radio::LossCause;
 
@@ -37,6 +38,8 @@ pub struct TrialRecord {
     pub latency: LatencyHistogram,
     /// Times that a robot came to believe that another was down.
     pub suspicions: u64,
+    /// What failed and when, in order of time: the truth that robots never see.
+    pub faults: Vec<FaultEpisode>,
     /// Connectivity at each sample time.
     pub connectivity: Vec<ConnectivitySample>,
     /// Robots at the end, in order of ids.
@@ -69,6 +72,39 @@ impl TrialRecord {
         let used = || self.robots.iter().filter(|robot| robot.role != 0).count();
         (self.outcome != Outcome::NoMission).then(used)
     }
+}
+
+/// A failure, from its beginning to its end.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FaultEpisode {
+    /// The fault's place in the scenario's list, from 0.
+    pub fault: u16,
+    /// What fails.
+    pub kind: FaultKind,
+    /// When it begins.
+    pub from: SimTime,
+    /// When it ends; `None` if it outlasts the trial.
+    pub until: Option<SimTime>,
+}
+
+/// What fails.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FaultKind {
+    /// A robot.
+    Robot {
+        /// Which.
+        robot: ActorId,
+        /// What it cannot do.
+        effect: Effect,
+        /// Its role when it failed, an index into the protocol's roles.
+        role: u8,
+        /// The target that it worked for when it failed, if any.
+        target: Option<u16>,
+    },
+    /// Nothing crosses a line.
+    Partition,
+    /// Links lose more.
+    Burst,
 }
 
 /// How a mission ended.

@@ -1,12 +1,14 @@
 //! The recorder: told of everything that happens in a run, it leaves a [`TrialRecord`].
 
 use crate::engine::{ActorId, SimTime, Span};
+use crate::faults::Change;
 use crate::geometry::{Pose, Vec2};
 use crate::protocol::{Note, Topic};
 use crate::radio::LossCause;
 
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
+use super::faults::Failures;
 use super::latency::LatencyHistogram;
 use super::mission::{Judge, Mission, Progress, Scene};
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
@@ -63,6 +65,7 @@ pub struct Recorder {
     offered: Vec<u64>,
     in_flight: Vec<u64>,
     reports: Reports,
+    failures: Failures,
     suspicions: u64,
     judge: Option<Judge>,
     connectivity: Vec<ConnectivitySample>,
@@ -85,6 +88,7 @@ impl Recorder {
             offered: vec![0; layout.topics],
             in_flight: vec![0; layout.topics],
             reports: Reports::new(layout.robots),
+            failures: Failures::new(layout.robots),
             suspicions: 0,
             judge: layout
                 .mission
@@ -138,12 +142,22 @@ impl Recorder {
         self.reports.note(robot, note);
     }
 
-    /// Samples the swarm's graph and where everyone is, `positions` in order of ids.
+    /// A fault began or ended at `now`.
+    pub fn fault(&mut self, now: SimTime, change: &Change) {
+        self.failures.change(now, change, &self.reports);
+    }
+
+    /// Samples the graph of the live robots and where everyone is, `positions` in order of ids.
     pub fn sample(&mut self, now: SimTime, positions: &[Vec2]) {
-        let graph = Graph::within_range(positions, self.radio_range);
+        let live: Vec<Vec2> = (0..)
+            .zip(positions)
+            .filter(|(robot, _)| self.failures.is_live(ActorId(*robot)))
+            .map(|(_, position)| *position)
+            .collect();
+        let graph = Graph::within_range(&live, self.radio_range);
         let components = graph.components() as u32;
         let lambda2 = self.lambda2(graph);
-        let scene = Scene::new(&self.reports, positions, self.radio_range);
+        let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
         self.connectivity.push(ConnectivitySample {
             at: now,
             lambda2,
@@ -175,7 +189,8 @@ impl Recorder {
         let Some(judge) = &mut self.judge else {
             return Progress::Underway;
         };
-        judge.observe(step, Scene::new(&self.reports, positions, self.radio_range))
+        let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
+        judge.observe(step, scene)
     }
 
     /// Closes the books.
@@ -210,6 +225,7 @@ impl Recorder {
             traffic,
             latency: self.latency,
             suspicions: self.suspicions,
+            faults: self.failures.into_episodes(),
             connectivity: self.connectivity,
             robots: robots(self.reports, end.poses),
             trajectories: self.trajectories,
@@ -316,7 +332,7 @@ mod tests {
 
     #[test]
     #[should_panic(
-        expected = "frames were not conserved on topic 0: offered 10, delivered 2, lost 1 (channel 1), in flight 1"
+        expected = "frames were not conserved on topic 0: offered 10, delivered 2, lost 1 (channel 1, link_fault 0, receiver_down 0), in flight 1"
     )]
     fn a_broken_ledger_ends_the_run_with_every_number() {
         let mut recorder = recorder(None);

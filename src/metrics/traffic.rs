@@ -38,7 +38,8 @@ pub(super) struct Traffic {
     header_bytes: u16,
     sent: Vec<Count>,
     received: Vec<Count>,
-    lost: Vec<[Count; LossCause::ALL.len()]>,
+    /// A table for each cause, in the order of their numbers.
+    lost: [Vec<Count>; LossCause::ALL.len()],
     /// Where the cells of each robot's present role begin in these tables.
     starts: Vec<u32>,
 }
@@ -53,7 +54,7 @@ impl Traffic {
             header_bytes,
             sent: vec![Count::default(); cells],
             received: vec![Count::default(); cells],
-            lost: vec![[Count::default(); LossCause::ALL.len()]; cells],
+            lost: LossCause::ALL.map(|_| vec![Count::default(); cells]),
             starts: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
         }
     }
@@ -87,7 +88,7 @@ impl Traffic {
     #[inline]
     pub(super) fn lost(&mut self, robot: ActorId, topic: Topic, cause: LossCause, payload_bytes: u32) {
         let cell = self.cell(robot, topic);
-        self.lost[cell][cause as usize].add(payload_bytes);
+        self.lost[cause as usize][cell].add(payload_bytes);
     }
 
     #[inline]
@@ -110,7 +111,7 @@ impl Traffic {
     }
 
     fn saw_traffic(&self, cell: usize) -> bool {
-        let lost = self.lost[cell].iter().any(|count| count.frames > 0);
+        let lost = self.lost.iter().any(|counts| counts[cell].frames > 0);
         lost || self.sent[cell].frames > 0 || self.received[cell].frames > 0
     }
 
@@ -123,7 +124,7 @@ impl Traffic {
             topic: (cell % self.topics) as u8,
             sent: volume(self.sent[cell]),
             received: volume(self.received[cell]),
-            lost: self.lost[cell].map(volume),
+            lost: LossCause::ALL.map(|cause| volume(self.lost[cause as usize][cell])),
         }
     }
 }

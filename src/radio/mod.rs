@@ -37,17 +37,23 @@ use crate::geometry::Vec2;
 pub enum LossCause {
     /// The channel's loss model dropped it.
     Channel,
+    /// A fault of the link stopped it (a partition, a burst): decided when it is sent, before the channel.
+    LinkFault,
+    /// Its receiver could not hear when it arrived.
+    ReceiverDown,
 }
 
 impl LossCause {
     /// Every cause, in the order of their numbers.
-    pub const ALL: [Self; 1] = [Self::Channel];
+    pub const ALL: [Self; 3] = [Self::Channel, Self::LinkFault, Self::ReceiverDown];
 
     /// The name that reports and tables use.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Channel => "channel",
+            Self::LinkFault => "link_fault",
+            Self::ReceiverDown => "receiver_down",
         }
     }
 }

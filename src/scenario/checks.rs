@@ -3,7 +3,11 @@
 use std::f64::consts::PI;
 
 use crate::engine::Span;
+use crate::faults;
 use crate::motion::DeployConfig;
+use crate::protocol::Protocol as _;
+use crate::protocol::backbone::Backbone;
+use crate::protocol::heartbeat::Heartbeat;
 use crate::quantity::Positive;
 
 use super::path::FieldPath;
@@ -34,7 +38,8 @@ impl Problem {
 
     /// A problem that a section found in itself, at a path relative to it.
     fn of_section(section: &str, (path, message): (String, String)) -> Self {
-        let path = FieldPath::of(format!("{section}.{path}").trim_end_matches('.'));
+        let dot = if path.is_empty() || path.starts_with('[') { "" } else { "." };
+        let path = FieldPath::of(&format!("{section}{dot}{path}"));
         Self {
             message: format!("`{path}`: {message}"),
             path,
@@ -111,17 +116,19 @@ fn sections(scenario: &Scenario) -> Vec<Problem> {
         ..
     } = scenario;
     let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
-    let protocol = match &scenario.protocol {
-        ProtocolConfig::Backbone(backbone) => backbone.problems(swarm.robots, radio.range.get()),
-        ProtocolConfig::Heartbeat => Vec::new(),
+    let (protocol, roles) = match &scenario.protocol {
+        ProtocolConfig::Backbone(backbone) => (backbone.problems(swarm.robots, radio.range.get()), Backbone::ROLES),
+        ProtocolConfig::Heartbeat => (Vec::new(), Heartbeat::ROLES),
     };
+    let faults = faults::problems(&scenario.faults, swarm.robots, roles);
     let around = ["swarm.robots", "arena.size", "motion.body_radius"];
-    let sections: [(_, _, &[&str]); 5] = [
+    let sections: [(_, _, &[&str]); 6] = [
         ("arena", arena.problems(), &[]),
         ("motion", motion.problems(), &[]),
         ("radio", radio.problems(), &[]),
         ("swarm.deploy", deploy, &around),
         ("protocol", protocol, &["swarm.robots", "radio.range"]),
+        ("faults", faults, &["swarm.robots", "protocol"]),
     ];
     let found = sections.into_iter().flat_map(|(section, problems, also)| {
         let placed = move |problem| Problem::of_section(section, problem).with(also);

@@ -30,6 +30,7 @@ pub use report::{Diagnostic, Place, Report, Style};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
 use crate::protocol::backbone::BackboneConfig;
@@ -77,6 +78,9 @@ pub struct Scenario {
     /// The radio.
     #[serde(default)]
     pub radio: RadioConfig,
+    /// How robots and links fail; nothing fails by default.
+    #[serde(default)]
+    pub faults: Vec<FaultConfig>,
     /// What is measured.
     #[serde(default)]
     pub metrics: MetricsConfig,

@@ -8,17 +8,30 @@ use tokio_util::codec::{Decoder, Encoder};
 use super::digest::Digest;
 use super::error::RunError;
 use super::inbox::Inbox;
-use crate::engine::{ActorId, SimTime};
+use crate::engine::{ActorId, SimTime, Span};
+use crate::faults::Faults;
 use crate::metrics::Recorder;
 use crate::motion::World;
 use crate::protocol::{Frame, Protocol, Reception};
-use crate::radio::{Fate, Listener, Medium};
+use crate::radio::{Fate, Listener, LossCause, Medium};
+
+/// From an instant to the next.
+const INSTANT: Span = Span::from_nanos(1);
 
 /// A copy that will arrive.
 struct Arrival {
     receiver: ActorId,
     at: SimTime,
     displacement: [f32; 2],
+}
+
+/// What a transmission depends on beside the radio: where everybody is, and what fails.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// Where robots are.
+    pub world: &'a World,
+    /// What fails.
+    pub faults: &'a Faults,
 }
 
 /// The radio's side of a run.
@@ -32,6 +45,12 @@ pub struct Air<P: Protocol> {
     /// The copies of the present frame that will arrive. Fates are decided first and inboxes filled after: the one is
     /// arithmetic, the other waits for memory, and apart each runs at its own pace.
     arrivals: Vec<Arrival>,
+    /// Which listeners the faults of links hinder, and with what probability; empty where nothing is wrong with links.
+    hindrances: Vec<f64>,
+    /// The listeners that the present frame reaches in spite of the faults of links.
+    reachable: Vec<Listener>,
+    /// Since when each robot has been unable to hear; `NEVER` if it hears.
+    deaf_since: Vec<SimTime>,
     /// Receivers whose next arrival may have come forward, for scenarios that wake robots on reception.
     reached: Vec<ActorId>,
     tell_reached: bool,
@@ -47,6 +66,9 @@ impl<P: Protocol> Air<P> {
             payload: BytesMut::with_capacity(256),
             listeners: Vec::new(),
             arrivals: Vec::new(),
+            hindrances: Vec::new(),
+            reachable: Vec::new(),
+            deaf_since: vec![SimTime::NEVER; robots],
             reached: Vec::new(),
             tell_reached: wake_on_reception,
         }
@@ -58,10 +80,11 @@ impl<P: Protocol> Air<P> {
         now: SimTime,
         sender: ActorId,
         messages: impl Iterator<Item = P::Message>,
-        world: &World,
+        place: Surroundings<'_>,
         recorder: &mut Recorder,
         digest: &mut Digest,
     ) -> Result<(), RunError> {
+        let Surroundings { world, faults } = place;
         self.listeners.clear();
         let listeners = &mut self.listeners;
         world.for_each_within(sender, now, self.medium.range(), |id, from_sender| {
@@ -70,8 +93,14 @@ impl<P: Protocol> Air<P> {
                 sender: -from_sender,
             });
         });
+        self.hindrances.clear();
+        if faults.trouble_links() {
+            let here = world.position(sender, now);
+            let hindrance = |listener: &Listener| faults.link_loss((sender, here), (listener.id, here - listener.sender));
+            self.hindrances.extend(self.listeners.iter().map(hindrance));
+        }
         for message in messages {
-            self.transmit(now, sender, message, recorder, digest)?;
+            self.transmit(now, sender, message, faults, recorder, digest)?;
         }
         Ok(())
     }
@@ -81,6 +110,7 @@ impl<P: Protocol> Air<P> {
         now: SimTime,
         sender: ActorId,
         message: P::Message,
+        faults: &Faults,
         recorder: &mut Recorder,
         digest: &mut Digest,
     ) -> Result<(), RunError> {
@@ -104,20 +134,26 @@ impl<P: Protocol> Air<P> {
             payload_bytes,
             message,
         });
-        let Self { medium, arrivals, .. } = self;
-        medium.transmit(
-            now,
-            sender,
-            self.listeners.iter().copied(),
-            |receiver, fate| match fate {
-                Fate::Arrives { at, displacement } => arrivals.push(Arrival {
-                    receiver,
-                    at,
-                    displacement,
-                }),
-                Fate::Lost(cause) => recorder.lost(receiver, topic, cause, payload_bytes),
-            },
-        );
+        if !self.hindrances.is_empty() {
+            self.hinder(&frame, faults, recorder);
+        }
+        let Self {
+            medium,
+            arrivals,
+            listeners,
+            reachable,
+            hindrances,
+            ..
+        } = self;
+        let listeners = if hindrances.is_empty() { listeners } else { reachable };
+        medium.transmit(now, sender, listeners.iter().copied(), |receiver, fate| match fate {
+            Fate::Arrives { at, displacement } => arrivals.push(Arrival {
+                receiver,
+                at,
+                displacement,
+            }),
+            Fate::Lost(cause) => recorder.lost(receiver, topic, cause, payload_bytes),
+        });
         for arrival in self.arrivals.drain(..) {
             if self.tell_reached {
                 self.reached.push(arrival.receiver);
@@ -131,6 +167,41 @@ impl<P: Protocol> Air<P> {
         Ok(())
     }
 
+    /// Finds the listeners that `frame` reaches in spite of the faults of links; the other copies are lost.
+    fn hinder(&mut self, frame: &Frame<P::Message>, faults: &Faults, recorder: &mut Recorder) {
+        self.reachable.clear();
+        for (listener, &loss) in self.listeners.iter().zip(&self.hindrances) {
+            if faults.stops(loss, frame.sender, listener.id, frame.sequence) {
+                recorder.lost(listener.id, frame.topic, LossCause::LinkFault, frame.payload_bytes);
+            } else {
+                self.reachable.push(*listener);
+            }
+        }
+    }
+
+    /// From `now` on `receiver` can hear or not. A copy is lost if its receiver cannot hear at the instant of its arrival;
+    /// one that arrived before can still be read.
+    pub fn set_hearing(&mut self, now: SimTime, receiver: ActorId, hears: bool, recorder: &mut Recorder) {
+        let since = self.deaf_since[receiver.index()];
+        if hears {
+            self.lose_unheard(now, receiver, recorder);
+            self.deaf_since[receiver.index()] = SimTime::NEVER;
+        } else {
+            self.deaf_since[receiver.index()] = since.min(now);
+        }
+    }
+
+    /// Loses what has arrived at `receiver` before `until` and could not be heard.
+    fn lose_unheard(&mut self, until: SimTime, receiver: ActorId, recorder: &mut Recorder) {
+        let since = self.deaf_since[receiver.index()];
+        if since < until {
+            self.inboxes[receiver.index()].drop_arrivals(since, until, |reception| {
+                let frame = &reception.frame;
+                recorder.lost(receiver, frame.topic, LossCause::ReceiverDown, frame.payload_bytes);
+            });
+        }
+    }
+
     /// Hands over what has reached `receiver` by `now`, and counts it as delivered.
     pub fn deliver(
         &mut self,
@@ -139,15 +210,18 @@ impl<P: Protocol> Air<P> {
         arrived: &mut Vec<Reception<P::Message>>,
         recorder: &mut Recorder,
     ) {
+        self.lose_unheard(now + INSTANT, receiver, recorder);
         self.inboxes[receiver.index()].take_arrived(now, arrived);
         for reception in arrived.iter() {
             record_delivery(receiver, reception, recorder);
         }
     }
 
-    /// The earliest arrival that still waits for `receiver`.
+    /// The earliest arrival that still waits for `receiver`; none if it cannot hear.
     pub fn next_arrival(&self, receiver: ActorId) -> SimTime {
-        self.inboxes[receiver.index()].next_arrival().unwrap_or(SimTime::NEVER)
+        let hears = self.deaf_since[receiver.index()] == SimTime::NEVER;
+        let next = || self.inboxes[receiver.index()].next_arrival();
+        hears.then(next).flatten().unwrap_or(SimTime::NEVER)
     }
 
     /// Moves out the robots that frames were sent to since the last call.
@@ -156,7 +230,10 @@ impl<P: Protocol> Air<P> {
     }
 
     /// Settles what still waits when the run ends at `end`: arrived means delivered, else in flight.
-    pub fn settle(&self, end: SimTime, recorder: &mut Recorder) {
+    pub fn settle(&mut self, end: SimTime, recorder: &mut Recorder) {
+        for receiver in 0..self.inboxes.len() as u32 {
+            self.lose_unheard(end + INSTANT, ActorId(receiver), recorder);
+        }
         for (receiver, inbox) in self.inboxes.iter().enumerate() {
             for reception in inbox.waiting() {
                 if reception.at <= end {

@@ -3,6 +3,7 @@
 use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::engine::{ActorId, SimTime};
+use crate::faults::{Change, Subject};
 use crate::protocol::{Input, Output, Wake};
 
 /// Collects events; 128 bits of XXH3 at the end.
@@ -46,15 +47,22 @@ impl Digest {
         self.0.update(bytes);
     }
 
+    /// A fault began or ended.
+    pub fn fault(&mut self, now: SimTime, change: &Change) {
+        let robot = match change.subject {
+            Subject::Robot { robot, .. } => u64::from(robot.0),
+            Subject::Links(_) => u64::MAX,
+        };
+        self.words(&[now.as_nanos(), u64::from(change.fault), u64::from(change.begins), robot]);
+    }
+
     /// The digest of what was collected.
     pub fn finish(&self) -> u128 {
         self.0.digest128()
     }
 
     fn words<const N: usize>(&mut self, words: &[u64; N]) {
-        for word in words {
-            self.0.update(&word.to_le_bytes());
-        }
+        self.0.update(words.map(u64::to_le_bytes).as_flattened());
     }
 }
 

@@ -40,6 +40,12 @@ impl<M> Inbox<M> {
         arrived.sort_unstable_by(arrival_order);
     }
 
+    /// Takes out what arrives within `from..until`, and calls `lose` with each.
+    pub fn drop_arrivals(&mut self, from: SimTime, until: SimTime, lose: impl FnMut(Reception<M>)) {
+        let lost = |reception: &mut Reception<M>| (from..until).contains(&reception.at);
+        self.waiting.extract_if(.., lost).for_each(lose);
+    }
+
     /// The earliest arrival still waiting.
     pub fn next_arrival(&self) -> Option<SimTime> {
         self.waiting.iter().map(|reception| reception.at).min()

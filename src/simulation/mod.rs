@@ -1,6 +1,6 @@
 //! The event loop of one run: it carries frames, moves robots and calls the recorder, and decides nothing itself.
 //!
-//! Events at one instant happen in this order: motion tick, robot wakes, sample, observation. All robots that wake at
+//! Events at one instant happen in this order: motion tick, faults, robot wakes, sample, observation. All robots that wake at
 //! one instant see the world as it was before any of them acted; their answers are then applied in the order of waking.
 //!
 //! A frame does not travel through the event queue. When a robot sends, the medium decides the fate of every copy at

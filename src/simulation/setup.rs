@@ -9,6 +9,7 @@ use super::air::Air;
 use super::error::RunError;
 use super::run::{Rhythm, Run};
 use crate::engine::{Actors, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
+use crate::faults::{FaultConfig, Faults};
 use crate::geometry::Pose;
 use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
@@ -57,6 +58,8 @@ pub struct Setup {
     pub control: ControlConfig,
     /// The radio.
     pub radio: RadioConfig,
+    /// How robots and links fail.
+    pub faults: Vec<FaultConfig>,
     /// What is measured.
     pub metrics: MetricsConfig,
     /// What counts as completion, if anything does.
@@ -85,7 +88,7 @@ impl Setup {
     /// If a message cannot cross the air, or the run is interrupted.
     ///
     /// # Panics
-    /// If there are not as many poses as robots.
+    /// If there are not as many poses as robots, or a config has problems: a scenario is checked before it is run.
     pub fn run<P: Protocol>(
         &self,
         poses: Vec<Pose>,
@@ -121,7 +124,8 @@ impl Setup {
             rhythm.wake_on_reception,
         );
         let recorder = Recorder::new(self.layout::<P>(robots), &self.metrics);
-        let run = Run::new(rhythm, driver, world, air, recorder, streams, &first_steps);
+        let faults = Faults::new(&self.faults, P::ROLES, robots, rhythm.control_period, streams);
+        let run = Run::new(rhythm, driver, world, air, faults, recorder, streams, &first_steps);
         run.until_end(self.trial, self.seed, stop).await
     }
 

@@ -69,6 +69,7 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         motion: scenario.motion.clone(),
         control: scenario.control.clone(),
         radio: scenario.radio.clone(),
+        faults: scenario.faults.clone(),
         metrics: scenario.metrics.clone(),
         mission: None,
     }
