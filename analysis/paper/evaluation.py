@@ -24,7 +24,7 @@ HAZARDS = (0.0002, 0.0004, 0.0005)
 TRIED_SHARES = (20, 50, 70, 90)
 """Shares at which other hazards and readings are tried, per cent."""
 NEEDED = 21
-"""Robots of a backbone with 2 links to four targets 4.5 m out: the root, and for each target a worker and 2 × 2 relays."""
+"""Robots of a backbone with 2 links to four targets 4.5 m out: a root, and for each a worker and 2 × 2 relays."""
 ON_JOIN_WINDOW = 100.0
 """Seconds after joining within which `OnJoin` strikes: about the time that a chain takes to grow."""
 
