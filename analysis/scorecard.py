@@ -81,10 +81,10 @@ def main(given: list[str]) -> int:
     parser.add_argument("--out", type=Path, default=OUT, help="where figures.json is and scorecard.json goes")
     options = parser.parse_args(given)
     card = claims.scorecard(figures(options.results, options.out))
-    print("\n".join(entry(claim) for claim in card))
-    print(f"\n{totals(card)}\nRules of the verdicts: analysis/paper/verdict.py.")
     text = json.dumps(card, indent=1, ensure_ascii=False)
     (options.out / "scorecard.json").write_text(text + "\n", encoding="utf-8")
+    print("\n".join(entry(claim) for claim in card))
+    print(f"\n{totals(card)}\nRules of the verdicts: analysis/paper/verdict.py.")
     return 0
 
 
