@@ -9,7 +9,6 @@ tables.md to results/paper/.
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -17,8 +16,7 @@ from typing import Any
 
 from paper import tables
 from paper.draw import bandwidth, completion, connectivity, faults, formation, style
-from paper.evaluation import ROOT
-from scorecard import OUT, figures
+from scorecard import figures, parser
 
 Draw = Callable[[dict[str, Any], Path], None]
 
@@ -48,11 +46,8 @@ FIGURES: tuple[tuple[str, tuple[str, ...], Callable[[dict[str, Any]], dict[str, 
 
 def main(given: list[str]) -> int:
     """Draws what there are figures for."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=ROOT / "results", help="folder of the results folders")
-    parser.add_argument("--out", type=Path, default=OUT, help="where figures.json is and the figures go")
-    options = parser.parse_args(given)
-    sections = figures(options.results, options.out)
+    options = parser(__doc__).parse_args(given)
+    sections = figures(options.results, options.out, options.trials)
     style.setup()
     for name, needs, part, draw in FIGURES:
         if all(need in sections for need in needs):

@@ -18,15 +18,25 @@ from pathlib import Path
 from typing import Any
 
 from paper import claims
-from paper.evaluation import ROOT
+from paper.evaluation import ROOT, TRIALS
 from paper.verdict import AGREES, CANNOT_SAY, DIFFERS
 
 OUT = ROOT / "results" / "paper"
 WIDTH = 100
 
 
-def figures(results: Path, out: Path) -> dict[str, Any]:
+def parser(about: str | None) -> argparse.ArgumentParser:
+    """The options that scorecard and figures share."""
+    made = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+    made.add_argument("--results", type=Path, default=ROOT / "results", help="folder of the results folders")
+    made.add_argument("--out", type=Path, default=OUT, help="where figures.json is and what is made goes")
+    made.add_argument("--trials", type=int, default=TRIALS, help=f"trials that a run must have to count [{TRIALS}]")
+    return made
+
+
+def figures(results: Path, out: Path, trials: int) -> dict[str, Any]:
     """What the claims are judged by, brought up to date with `results` if there is anything, and if polars is there."""
+    out.mkdir(parents=True, exist_ok=True)
     path = out / "figures.json"
     known = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     if not any(results.glob("*/manifest.json")):
@@ -37,7 +47,7 @@ def figures(results: Path, out: Path) -> dict[str, Any]:
     except ImportError as missing:
         print(f"{missing}: figures as committed (pip install --requirement analysis/requirements.txt).\n")
         return known
-    sections, sources = collect.collect(results, known)
+    sections, sources = collect.collect(results, known, trials)
     for name, source in sources.items():
         print(f"{name}: {source}")
     print()
@@ -76,11 +86,8 @@ def totals(card: list[dict[str, Any]]) -> str:
 
 def main(given: list[str]) -> int:
     """Always 0: a difference from the paper is a finding, not a failure."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=ROOT / "results", help="folder of the results folders")
-    parser.add_argument("--out", type=Path, default=OUT, help="where figures.json is and scorecard.json goes")
-    options = parser.parse_args(given)
-    card = claims.scorecard(figures(options.results, options.out))
+    options = parser(__doc__).parse_args(given)
+    card = claims.scorecard(figures(options.results, options.out, options.trials))
     text = json.dumps(card, indent=1, ensure_ascii=False)
     (options.out / "scorecard.json").write_text(text + "\n", encoding="utf-8")
     print("\n".join(entry(claim) for claim in card))

@@ -38,11 +38,11 @@ OPTIMA = ("same_robot", "best_assignment", "after_hold")
 """To the formation at completion by the same robots or by the best placed ones; to the formation at the trial's end."""
 
 
-def collect(results: Path, known: Section) -> tuple[Section, dict[str, str]]:
-    """The sections, and where each is from: fresh where `results` has all runs, else as `known`."""
+def collect(results: Path, known: Section, trials: int = TRIALS) -> tuple[Section, dict[str, str]]:
+    """The sections, and where each is from: fresh where `results` has all runs with `trials` trials, else as `known`."""
     sections, sources = dict(known), {}
     for name, (runs, make) in SECTIONS.items():
-        missing = [run.name for run in runs if not Folder(results / run.name).is_complete(TRIALS)]
+        missing = [run.name for run in runs if not Folder(results / run.name).is_complete(trials)]
         if missing:
             what = f"{missing[0]} and {len(missing) - 1} more" if len(missing) > 1 else missing[0]
             sources[name] = f"as committed ({what} not in {results})" if name in known else f"absent ({what})"
