@@ -39,7 +39,7 @@ OPTIMA = ("same_robot", "best_assignment", "after_hold")
 
 
 def collect(results: Path, known: Section, trials: int = TRIALS) -> tuple[Section, dict[str, str]]:
-    """The sections, and where each is from: fresh where `results` has all runs with `trials` trials, else as `known`."""
+    """The sections, and where each is from: fresh where `results` has all runs with `trials` trials, else `known`."""
     sections, sources = dict(known), {}
     for name, (runs, make) in SECTIONS.items():
         missing = [run.name for run in runs if not Folder(results / run.name).is_complete(trials)]

@@ -120,7 +120,7 @@ def readings(runs: Section) -> str:
 
 def faults(curves: Section, title: str = "Failures: the paper's reading, hazard 0.0003") -> str:
     """Steps, failed missions and failures by share."""
-    counts = ["completed", "median steps", "failed missions, %", "failed robots", "failed, enough left", "connected, %"]
+    counts = ["completed", "median steps", "failed missions, %", "failed robots", "failed, enough left", "connected, % of time"]
     head = ["faults", "robots", "share", *counts]
     rows = [
         [
@@ -132,7 +132,7 @@ def faults(curves: Section, title: str = "Failures: the paper's reading, hazard 
             with_interval(point["failed_ratio"], 0, 100),
             "–" if point["failures"] is None else plain(sum(point["failures"]) / len(point["failures"]), 1),
             "–" if point["failed_though_enough"] is None else str(len(point["failed_though_enough"])),
-            with_interval(point["connected_share"], 1, 100),
+            plain(100 * point["connected_share"]["value"], 1),
         ]
         for name, by_robots in curves.items()
         for robots, curve in by_robots.items()

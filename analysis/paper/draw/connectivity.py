@@ -20,6 +20,7 @@ def draw(runs: dict[str, Any], path: Path) -> None:
         label = f"{run['robots']} robots, {style.links(run['links'])}"
         axes.plot(run["time_s"], run["median"], color=colour, linestyle=dashes, linewidth=1.4, label=label)
     axes.set_yscale("log")
+    axes.set_yticks([0.3, 1, 3, 10, 30])
     axes.yaxis.set_major_formatter(ScalarFormatter())
     axes.set(xlabel="simulated time, s", ylabel="algebraic connectivity λ₂", xlim=(0, None))
     handles, labels = axes.get_legend_handles_labels()
