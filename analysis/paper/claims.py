@@ -106,7 +106,7 @@ def falls(figures: Section) -> Iterator[Claim]:
     judged = verdict.above(whole) if monotone else verdict.DIFFERS
     note = f"steps less with 80 robots than with 20: {_arrows(runs)}"
     if "deployment" in figures:
-        note += f"; {_arrows(figures['deployment'])} from equally wide deployments: the trend is the deployment's"
+        note += f"; {_arrows(figures['deployment'])} from equally wide deployments"
     yield Claim(statement, 1400 - 1214, rounded(whole["value"]), interval(whole), judged, trials=whole["n"], note=note)
 
 
