@@ -145,7 +145,7 @@ impl Recorder {
         if let Note::Role(role) = note {
             self.traffic.enter(robot, *role);
         }
-        self.suspicions += u64::from(matches!(note, Note::Suspects(_)));
+        self.suspicions += u64::from(matches!(note, Note::Suspects { .. }));
         self.reports.note(robot, note);
     }
 

@@ -75,7 +75,8 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     digest: Digest,
     control_steps: ControlSteps,
     alarms: Vec<Alarms>,
-    wakes: Vec<u32>,
+    /// Each robot's control steps and other wakes so far: apart, so that no timer shifts the draws of a control step.
+    wakes: Vec<[u32; 2]>,
     randomness: KeyedStreams,
     batch: Jobs<P>,
     spare_jobs: Jobs<P>,
@@ -123,7 +124,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             digest: Digest::new(),
             control_steps,
             alarms: first_steps.iter().map(|_| Alarms::default()).collect(),
-            wakes: vec![0; first_steps.len()],
+            wakes: vec![[0; 2]; first_steps.len()],
             randomness: streams.keyed(ROBOT),
             batch: Vec::new(),
             spare_jobs: Vec::new(),
@@ -231,8 +232,10 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     /// Fills in what `robot` is told at `now`.
     fn prepare(&mut self, now: SimTime, robot: ActorId, wake: Wake) -> Box<JobFor<P>> {
         let index = robot.index();
-        let random = self.randomness.at(robot.0, 0, self.wakes[index]);
-        self.wakes[index] += 1;
+        let lane = u32::from(wake != Wake::ControlStep);
+        let wakes = &mut self.wakes[index][lane as usize];
+        let random = self.randomness.at(robot.0, lane, *wakes);
+        *wakes += 1;
         let pose = self.world.pose(robot, now);
         let mut job = self.spare_jobs.pop().unwrap_or_else(|| {
             Box::new(Job {

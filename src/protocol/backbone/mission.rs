@@ -92,8 +92,7 @@ pub struct Parameters {
     pub status_every: u64,
     pub strand_every: u64,
     pub request_every: u64,
-    /// Silence after which a neighbour is no longer counted on.
-    pub silence: Span,
+    pub detector: DetectorConfig,
 }
 
 impl Mission {
@@ -196,7 +195,6 @@ impl Parameters {
         control_period: Span,
     ) -> Self {
         let steps = |seconds: f64| (seconds / control_period.as_secs()).ceil() as u64;
-        let DetectorConfig::Timeout(silence) = detector;
         let law = &config.motion;
         let strand_every = gossip.strand.steps(control_period);
         let request_every = gossip.request.steps(control_period);
@@ -229,7 +227,7 @@ impl Parameters {
             status_every: gossip.status.steps(control_period),
             strand_every,
             request_every,
-            silence: Span::from_secs(silence.get()),
+            detector: detector.clone(),
         }
     }
 }
