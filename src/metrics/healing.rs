@@ -5,7 +5,6 @@ use crate::faults::{Change, Subject};
 use crate::geometry::Vec2;
 use crate::protocol::Topic;
 
-use super::faults::Failures;
 use super::mission::{Mission, Scene};
 use super::record::HealingEpisode;
 use super::reports::Reports;
@@ -182,6 +181,7 @@ mod tests {
     use super::*;
     use crate::faults::{Effect, Health};
     use crate::metrics::MissionTarget;
+    use crate::metrics::faults::Failures;
     use crate::protocol::{Note, Role};
 
     const WORKER: Role = Role(1);
