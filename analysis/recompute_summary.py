@@ -89,7 +89,7 @@ def kaplan_meier(times):
                 levels = [0.0] * 3
             found = [f if f is not None else (float(time) if s <= 0.5 else None) for f, s in zip(found, levels)]
         at_risk -= sum(1 for t, _ in times if t == time)
-    return estimate(*found, n=len(times))
+    return estimate(*(found if len(times) > 1 else [found[0], None, None]), n=len(times))
 
 
 def gini(values):
@@ -109,6 +109,8 @@ class Folder:
         self.bandwidth = self.table("bandwidth")
         self.latency = self.table("latency")
         self.connectivity = self.table("connectivity")
+        self.faults = self.table("faults")
+        self.healing = self.table("healing")
         self.topics = self.frames["topic"].unique(maintain_order=True).to_list()
         prefix = "robots_"
         self.roles = [c.removeprefix(prefix) for c in self.connectivity.columns if c.startswith(prefix)]
@@ -197,6 +199,39 @@ class Folder:
         times = {"completed": lambda done, _: (done, True), "censored": lambda _, steps: (steps, False)}
         return [times[outcome](done, steps) for outcome, done, steps in rows if outcome != "no_mission"]
 
+    def failures(self):
+        """What failed, if anything did."""
+        if self.faults.is_empty():
+            return {}
+        robots = self.faults.filter(pl.col("robot").is_not_null())
+        failed = [float(robots.filter(trial=trial)["robot"].n_unique()) for trial in self.trials["trial"]]
+        by_role = {role: len(robots.filter(role=role)) for role in self.roles}
+        return {"faults": {"robots": mean(failed), "by_role": by_role, "links": len(self.faults) - len(robots)}}
+
+    def healed(self, rows):
+        mended = rows.filter(pl.col("healed_s").is_not_null())
+        times = list(rows.select("watched_s", pl.col("healed_s").is_not_null()).iter_rows())
+        frames = {topic: [float(n) for n in mended[f"{topic.replace(' ', '_')}_frames"]] for topic in self.topics}
+        return {
+            "failures": len(rows),
+            "healed": len(mended),
+            "time": {"median": kaplan_meier(times)},
+            "distance": mean(mended["distance_m"].to_list()),
+            "frames": {topic: mean(counts) for topic, counts in frames.items()},
+        }
+
+    def mending(self):
+        """How targets got their links back, if a robot failed that worked for one."""
+        if self.healing.is_empty():
+            return {}
+        harmless = self.healing.filter(pl.col("healed_s").eq_missing(pl.col("failed_s")))
+        harmful = self.healing.filter(pl.col("healed_s").ne_missing(pl.col("failed_s")))
+        alone = pl.col("overlapping") == 0
+        by_overlap = {"alone": self.healed(harmful.filter(alone)), "overlapping": self.healed(harmful.filter(~alone))}
+        by_role = {role: self.healed(harmful.filter(role=role)) for role in self.roles}
+        whole = {**self.healed(harmful), "harmless": len(harmless), "by_role": by_role, "by_overlap": by_overlap}
+        return {"healing": whole}
+
     def summary(self):
         times = self.completion()
         completed = sum(done for _, done in times)
@@ -224,6 +259,8 @@ class Folder:
             "lambda2_min": {**median(least), "min": min((v for v in least if v is not None), default=None)},
             "connected_share": mean(list(self.samples(lambda rows: (rows["components"] == 1).sum() / len(rows)))),
             "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]]),
+            **self.failures(),
+            **self.mending(),
             "steps": {"value": self.trials["steps"].sum()},
             "simulated_s": {"value": total(self.trials["simulated_s"])},
         }

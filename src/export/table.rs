@@ -39,6 +39,7 @@ enum Value<R> {
     F64(Get<R, f64>),
     OptionalF64(Get<R, Option<f64>>),
     Text(Get<R, Cow<'static, str>>),
+    OptionalText(Get<R, Option<Cow<'static, str>>>),
     ListOfIds(Get<R, Vec<u32>>),
 }
 
@@ -73,6 +74,8 @@ constructors! {
     optional_f64, OptionalF64, Option<f64>;
     /// Text.
     text, Text, Cow<'static, str>;
+    /// Text, null where there is none.
+    optional_text, OptionalText, Option<Cow<'static, str>>;
     /// Lists of small numbers.
     list_of_ids, ListOfIds, Vec<u32>;
 }
@@ -168,6 +171,12 @@ impl<R> Column<R> {
                 Repetition::REQUIRED,
                 Some(LogicalType::String),
             ),
+            Value::OptionalText(_) => leaf(
+                name,
+                Physical::BYTE_ARRAY,
+                Repetition::OPTIONAL,
+                Some(LogicalType::String),
+            ),
             Value::ListOfIds(_) => {
                 let element = leaf("element", Physical::INT32, Repetition::REQUIRED, None)?;
                 let list = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
@@ -198,6 +207,7 @@ impl<R> Column<R> {
             Value::F64(get) => required::<DoubleType, _>(group, rows.iter().map(get)),
             Value::OptionalF64(get) => optional::<DoubleType, _>(group, rows.iter().map(get)),
             Value::Text(get) => required::<ByteArrayType, _>(group, rows.iter().map(|row| text(get(row)))),
+            Value::OptionalText(get) => optional::<ByteArrayType, _>(group, rows.iter().map(|row| get(row).map(text))),
             Value::ListOfIds(get) => list::<Int32Type, _>(group, rows.iter().map(|row| signed(get(row)))),
         }
     }

@@ -9,7 +9,7 @@ use crate::quantity::{Finite, NonNegative, Positive, Probability};
 
 /// One way in which robots or links fail. The first seven fail robots and are short for `Robots`, the general form.
 ///
-/// ```ron
+/// ```text
 /// faults: [
 ///     Silence(robots: [3, 4], at: 120.0),
 ///     Crash(robots: [5], at: 30.0, lasts: For(60.0)),

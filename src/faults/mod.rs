@@ -14,6 +14,9 @@ mod robot;
 mod rules;
 mod state;
 
+#[cfg(test)]
+mod tests;
+
 pub use config::{
     BurstConfig, ChosenConfig, Effect, FallibleConfig, FaultConfig, IntervalConfig, LastsConfig, LinksConfig,
     OnJoinConfig, PartitionConfig, PlannedConfig, RadiationConfig, RegionConfig, RobotsConfig, WhenConfig,

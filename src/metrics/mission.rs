@@ -52,9 +52,9 @@ pub enum Progress {
 /// What the mission is judged by at one instant.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scene<'a> {
-    reports: &'a Reports,
-    failures: &'a Failures,
-    positions: &'a [Vec2],
+    pub(super) reports: &'a Reports,
+    pub(super) failures: &'a Failures,
+    pub(super) positions: &'a [Vec2],
     radio_range: f64,
 }
 
@@ -88,10 +88,25 @@ impl Mission {
     /// nl(t) of each target, in order: the chains of its best connected worker, wherever that is; 0 without a worker.
     pub(super) fn links(&self, scene: Scene) -> Vec<u32> {
         let chains = scene.chains(self.root);
-        let workers = |target| scene.reports.working_for(target, self.worker_role);
         (0..self.targets.len())
-            .map(|target| workers(target).map(|robot| chains.count(robot)).max().unwrap_or(0))
+            .map(|target| self.best_connected(target, &chains, scene))
             .collect()
+    }
+
+    /// nl(t) of target number `target`.
+    pub(super) fn links_of(&self, target: usize, scene: Scene) -> u32 {
+        self.best_connected(target, &scene.chains(self.root), scene)
+    }
+
+    fn best_connected(&self, target: usize, chains: &Chains, scene: Scene) -> u32 {
+        let workers = scene.reports.working_for(target, self.worker_role);
+        workers.map(|robot| chains.count(robot)).max().unwrap_or(0)
+    }
+
+    /// Whether a live worker of target number `target` is at it.
+    pub(super) fn is_held(&self, target: usize, scene: Scene) -> bool {
+        let mut workers = self.workers_at(target, scene);
+        workers.any(|robot| scene.failures.is_live(robot))
     }
 
     /// Whether every target is held with its links. The flow through the parent relation is computed only when
@@ -114,13 +129,17 @@ impl Mission {
 
     /// The workers of target number `target` that are at it and have enough parents near.
     fn holders(&self, target: usize, scene: Scene) -> Vec<ActorId> {
-        let MissionTarget { position, links } = self.targets[target];
-        scene
-            .reports
-            .working_for(target, self.worker_role)
-            .filter(|robot| (scene.positions[robot.index()] - position).norm() <= self.reach)
-            .filter(|&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
+        let links = self.targets[target].links as usize;
+        self.workers_at(target, scene)
+            .filter(|&robot| self.near_parents(robot, scene) >= links) // None if it has failed.
             .collect()
+    }
+
+    /// The workers of target number `target` that are at it.
+    fn workers_at(&self, target: usize, scene: Scene) -> impl Iterator<Item = ActorId> {
+        let (place, reach) = (self.targets[target].position, self.reach);
+        let workers = scene.reports.working_for(target, self.worker_role);
+        workers.filter(move |robot| (scene.positions[robot.index()] - place).norm() <= reach)
     }
 
     /// Distinct live parents of `robot`, live itself, within d_c of it.
@@ -187,6 +206,8 @@ impl Judge {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::SimTime;
+    use crate::faults::{Change, Effect, Health, Subject};
     use crate::protocol::Note;
 
     const WORKER: Role = Role(1);
@@ -221,6 +242,24 @@ mod tests {
                 failures,
                 positions,
             }
+        }
+
+        fn silence(&mut self, robot: u32) {
+            let silence = Subject::Robot {
+                robot: ActorId(robot),
+                effect: Effect::Silence,
+                health: Health {
+                    sends: false,
+                    hears: false,
+                    acts: true,
+                },
+            };
+            let change = Change {
+                fault: 0,
+                begins: true,
+                subject: silence,
+            };
+            self.failures.change(SimTime::ZERO, &change, &self.reports);
         }
 
         fn scene(&self) -> Scene<'_> {
@@ -275,6 +314,9 @@ mod tests {
         assert_fails_when("the worker works for no target", |stage| {
             stage.reports.note(ActorId(3), &Note::Target(None));
         });
+        for robot in [0, 1, 3] {
+            assert_fails_when("a robot of the chains is silent", |stage| stage.silence(robot));
+        }
         assert_fails_when("the worker has another role", |stage| {
             stage.reports.note(ActorId(3), &Note::Role(Role(0)));
         });

@@ -3,6 +3,7 @@
 mod config;
 mod connectivity;
 mod faults;
+mod healing;
 mod latency;
 mod mission;
 mod record;
@@ -17,7 +18,8 @@ pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget, Progress};
 pub use record::{
-    ConnectivitySample, FaultEpisode, FaultKind, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord, Volume,
+    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotState, TopicFates, TrafficRow,
+    TrialRecord, Volume,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
 pub use statistics::Estimate;

@@ -40,6 +40,8 @@ pub struct TrialRecord {
     pub suspicions: u64,
     /// What failed and when, in order of time: the truth that robots never see.
     pub faults: Vec<FaultEpisode>,
+    /// Every failure of a robot that worked for a target, and how the target got its links back, in order of time.
+    pub healing: Vec<HealingEpisode>,
     /// Connectivity at each sample time.
     pub connectivity: Vec<ConnectivitySample>,
     /// Robots at the end, in order of ids.
@@ -65,6 +67,26 @@ impl TrialRecord {
         (!self.connectivity.is_empty()).then(|| connected as f64 / self.connectivity.len() as f64)
     }
 
+    /// The robots that failed at some time, each once, in order of ids.
+    #[must_use]
+    pub fn failed_robots(&self) -> Vec<ActorId> {
+        self.robots_of(|_| true)
+    }
+
+    /// The robots that something ails at the end, each once, in order of ids.
+    #[must_use]
+    pub fn failed_at_end(&self) -> Vec<ActorId> {
+        self.robots_of(|episode| episode.until.is_none())
+    }
+
+    fn robots_of(&self, counts: impl Fn(&FaultEpisode) -> bool) -> Vec<ActorId> {
+        let episodes = self.faults.iter().filter(|episode| counts(episode));
+        let mut robots: Vec<_> = episodes.filter_map(|episode| episode.kind.robot()).collect();
+        robots.sort_unstable();
+        robots.dedup();
+        robots
+    }
+
     /// Robots that ended in another role than the one that all start in: those that the mission took. `None` where
     /// there is no mission.
     #[must_use]
@@ -87,6 +109,47 @@ pub struct FaultEpisode {
     pub until: Option<SimTime>,
 }
 
+/// A failure of a robot that worked for a target, until the target is again as it was just before: with as many
+/// vertex-disjoint chains as then (or as it needs, if it had more), and with a worker at it if there was one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HealingEpisode {
+    /// The fault's place in the scenario's list, from 0.
+    pub fault: u16,
+    /// The robot that failed.
+    pub robot: ActorId,
+    /// Its role then, an index into the protocol's roles.
+    pub role: u8,
+    /// The target that it worked for.
+    pub target: u16,
+    /// When it failed.
+    pub failed_at: SimTime,
+    /// Chains of the target just before, at most as many as it needs.
+    pub links_before: u32,
+    /// Chains of the target just after, at most as many as it needs.
+    pub links_after: u32,
+    /// Whether a worker was at the target just before.
+    pub held_before: bool,
+    /// The first control step at which the target was as before; the time of the failure if it did no harm, `None` if the
+    /// trial ended first.
+    pub healed_at: Option<SimTime>,
+    /// Other failures whose harm to the same target was unmended at some time meanwhile.
+    pub overlapping: u32,
+    /// Way that the live robots that work for the target have made meanwhile, all together, metres.
+    pub distance_m: f64,
+    /// Frames that robots that work for the target have sent meanwhile, by topic.
+    pub frames: Vec<u64>,
+    /// Their payload, bytes.
+    pub payload_bytes: Vec<u64>,
+}
+
+impl HealingEpisode {
+    /// Whether the target was worse off just after than just before.
+    #[must_use]
+    pub fn is_harmful(&self) -> bool {
+        self.healed_at != Some(self.failed_at)
+    }
+}
+
 /// What fails.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FaultKind {
@@ -105,6 +168,27 @@ pub enum FaultKind {
     Partition,
     /// Links lose more.
     Burst,
+}
+
+impl FaultKind {
+    /// The name that reports and tables use.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Robot { effect, .. } => effect.name(),
+            Self::Partition => "partition",
+            Self::Burst => "burst",
+        }
+    }
+
+    /// The robot that fails, if it is one.
+    #[must_use]
+    pub const fn robot(&self) -> Option<ActorId> {
+        match self {
+            Self::Robot { robot, .. } => Some(*robot),
+            Self::Partition | Self::Burst => None,
+        }
+    }
 }
 
 /// How a mission ended.

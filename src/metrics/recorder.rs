@@ -9,6 +9,7 @@ use crate::radio::LossCause;
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
 use super::faults::Failures;
+use super::healing::Healing;
 use super::latency::LatencyHistogram;
 use super::mission::{Judge, Mission, Progress, Scene};
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
@@ -66,6 +67,7 @@ pub struct Recorder {
     in_flight: Vec<u64>,
     reports: Reports,
     failures: Failures,
+    healing: Healing,
     suspicions: u64,
     judge: Option<Judge>,
     connectivity: Vec<ConnectivitySample>,
@@ -89,6 +91,7 @@ impl Recorder {
             in_flight: vec![0; layout.topics],
             reports: Reports::new(layout.robots),
             failures: Failures::new(layout.robots),
+            healing: Healing::new(layout.topics),
             suspicions: 0,
             judge: layout
                 .mission
@@ -103,6 +106,10 @@ impl Recorder {
     #[inline]
     pub fn transmitted(&mut self, sender: ActorId, topic: Topic, payload_bytes: u32) {
         self.traffic.sent(sender, topic, payload_bytes);
+        if self.healing.is_open() {
+            let target = self.reports.targets[sender.index()];
+            self.healing.sent(target, topic, payload_bytes);
+        }
     }
 
     /// A transmission was offered to `copies` robots in range. Each copy's fate is told in its own time.
@@ -138,13 +145,20 @@ impl Recorder {
         if let Note::Role(role) = note {
             self.traffic.enter(robot, *role);
         }
-        self.suspicions += u64::from(matches!(note, Note::Suspects(_)));
+        self.suspicions += u64::from(matches!(note, Note::Suspects { .. }));
         self.reports.note(robot, note);
     }
 
-    /// A fault began or ended at `now`.
-    pub fn fault(&mut self, now: SimTime, change: &Change) {
+    /// A fault began or ended at `now`, with every robot at its place in `positions`.
+    pub fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {
+        let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
+        let mission = self.judge.as_ref().map(|judge| &judge.mission);
+        let blow = mission.and_then(|mission| Healing::brace(change, mission, scene));
         self.failures.change(now, change, &self.reports);
+        if let (Some(blow), Some(mission)) = (blow, mission) {
+            let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
+            self.healing.strike(now, change.fault, &blow, mission, scene);
+        }
     }
 
     /// Samples the graph of the live robots and where everyone is, `positions` in order of ids.
@@ -190,6 +204,10 @@ impl Recorder {
             return Progress::Underway;
         };
         let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
+        if self.healing.is_open() {
+            let now = SimTime::ZERO + self.control_period * step;
+            self.healing.observe(now, &judge.mission, scene);
+        }
         judge.observe(step, scene)
     }
 
@@ -226,6 +244,7 @@ impl Recorder {
             latency: self.latency,
             suspicions: self.suspicions,
             faults: self.failures.into_episodes(),
+            healing: self.healing.into_episodes(),
             connectivity: self.connectivity,
             robots: robots(self.reports, end.poses),
             trajectories: self.trajectories,

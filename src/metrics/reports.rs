@@ -40,7 +40,7 @@ impl Reports {
                 self.parents[robot.index()].clone_from(parents);
             }
             // Beliefs about failures change nothing of the traffic, the graph or the mission.
-            Note::Suspects(_) | Note::Trusts(_) => {}
+            Note::Watches(_) | Note::Suspects { .. } | Note::Trusts(_) => {}
         }
     }
 

@@ -41,6 +41,9 @@ pub trait Protocol: Sized + 'static {
     const TOPICS: &'static [&'static str];
     /// Names of the roles, by which traffic is accounted. A robot starts in the first.
     const ROLES: &'static [&'static str];
+    /// The topic that the robots' failure detector listens to, if they run one: its frames are followed one by one, so that
+    /// a suspicion can be traced to what became of them.
+    const STATUS: Option<Topic> = None;
     /// Whether robots read [`Input::proximity`]; if not, it stays empty and costs nothing.
     const SENSES_PROXIMITY: bool = true;
 
@@ -161,8 +164,17 @@ pub enum Note {
     Target(Option<u16>),
     /// These are now the robots that it relies on to reach the root: a worker has one a link, a relay one.
     Parents(Vec<ActorId>),
-    /// It now believes that this robot is down.
-    Suspects(ActorId),
+    /// It heard this robot for the first time, and has its failure detector watch and trust it from now on.
+    Watches(ActorId),
+    /// It now believes that a robot that it watches is down.
+    Suspects {
+        /// Which.
+        robot: ActorId,
+        /// When that robot's last status arrived.
+        heard: SimTime,
+        /// The newest of that robot's frames that arrived, by its number among them.
+        sequence: u32,
+    },
     /// It believes so no longer.
     Trusts(ActorId),
 }

@@ -7,7 +7,7 @@ use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle
 
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use crate::metrics::Summary;
-use crate::metrics::summary::{Directions, Quantity, Spread, TopicBandwidth};
+use crate::metrics::summary::{Directions, HealingSummary, Quantity, Spread, TopicBandwidth};
 
 /// Columns that every line keeps within.
 const WIDTH: usize = 80;
@@ -53,6 +53,7 @@ pub fn terminal(input: &Input) -> String {
     };
     page.title(&input.summary.scenario, input.question);
     outcome(&mut page, input);
+    failures(&mut page, input.summary);
     bandwidth(&mut page, input.summary);
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
@@ -98,6 +99,70 @@ fn outcome(page: &mut Page, input: &Input) {
         "robots used",
         &format!("{} on average", estimate(&summary.robots_used.estimate, figure)),
     );
+}
+
+fn failures(page: &mut Page, summary: &Summary) {
+    let Some(faults) = &summary.faults else {
+        return;
+    };
+    page.heading("Failures");
+    let roles = faults.by_role.0.iter().filter(|(_, failures)| *failures > 0);
+    let roles: Vec<_> = roles
+        .map(|(role, failures)| format!("{role} {}", count(*failures)))
+        .collect();
+    let roles = if roles.is_empty() {
+        String::new()
+    } else {
+        format!("; failures by role: {}", roles.join(", "))
+    };
+    let robots = estimate(&faults.robots.estimate, figure);
+    page.entry("robots", &format!("{robots} failed on average{roles}"));
+    if faults.links > 0 {
+        page.entry("links", &format!("{} failures", count(faults.links)));
+    }
+    if let Some(healing) = &summary.healing {
+        healed(page, healing);
+    }
+}
+
+fn healed(page: &mut Page, healing: &HealingSummary) {
+    let total = &healing.total;
+    let harm = format!(
+        "{} failures cost a target a link or its worker, {} cost it nothing",
+        count(total.failures),
+        count(healing.harmless)
+    );
+    page.entry("harm", &harm);
+    if total.failures == 0 {
+        return;
+    }
+    let time = format!(
+        "{} of {}; Kaplan–Meier median of the time {}",
+        count(total.healed),
+        count(total.failures),
+        estimate(&total.time.median, seconds)
+    );
+    page.entry("healed", &time);
+    for (name, part) in healing.by_role.0.iter().chain(&healing.by_overlap.0) {
+        if part.failures > 0 {
+            let (healed, failures) = (count(part.healed), count(part.failures));
+            let time = estimate(&part.time.median, seconds);
+            page.entry("", &format!("{name}: {healed} of {failures}, median {time}"));
+        }
+    }
+    if total.healed == 0 {
+        return;
+    }
+    let distance = estimate(&total.distance.estimate, figure);
+    page.entry(
+        "meanwhile",
+        &format!("the target's robots moved {distance} m all together"),
+    );
+    let frames = total.frames.0.iter();
+    let frames: Vec<_> = frames
+        .map(|(topic, frames)| format!("{topic} {}", maybe(frames.estimate.value)))
+        .collect();
+    page.entry("", &format!("and sent on average, in frames: {}", frames.join(", ")));
 }
 
 fn bandwidth(page: &mut Page, summary: &Summary) {
@@ -220,16 +285,22 @@ fn radio(page: &mut Page, summary: &Summary) {
         .lost
         .0
         .iter()
-        .map(|(cause, frames)| format!("{cause} {}", count(*frames)))
+        .filter(|(_, frames)| *frames > 0)
+        .map(|(cause, frames)| format!("{} {}", cause.replace('_', " "), count(*frames)))
         .collect();
+    let causes = if causes.is_empty() {
+        String::new()
+    } else {
+        format!(" ({})", causes.join(", "))
+    };
     let balanced = fates.offered == fates.delivered + lost + fates.in_flight;
     let balance = format!(
-        "{} copies {} {} delivered + {} lost ({}) + {} in flight",
+        "{} copies {} {} delivered + {} lost{} + {} in flight",
         count(fates.offered),
         if balanced { "=" } else { "≠" },
         count(fates.delivered),
         count(lost),
-        causes.join(", "),
+        causes,
         count(fates.in_flight)
     );
     page.entry("offered", &balance);

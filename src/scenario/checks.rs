@@ -189,6 +189,15 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         let help = "make `control.period` a multiple of `motion.tick`";
         found.push(Problem::new("control.period", message, help).with(&["motion.tick"]));
     }
+    let status = scenario.gossip.status.steps(Span::from_secs(period)) as f64 * period;
+    let silence = scenario.detector.longest_silence().as_secs();
+    if status >= silence {
+        let message = format!(
+            "every pause between two statuses would be taken for a failure: they come every {status} s, and a silence of {silence} s is suspicious"
+        );
+        let help = "make `detector`'s timeout several times `gossip.status.interval`, which is rounded up to whole control periods";
+        found.push(Problem::new("detector", message, help).with(&["gossip.status.interval", "control.period"]));
+    }
     if time_limit < period {
         let message = format!("the time limit of {time_limit} s ends before the first control period of {period} s");
         let help = "make `time_limit` longer than `control.period`";

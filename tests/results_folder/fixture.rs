@@ -6,9 +6,11 @@ use std::path::Path;
 use desim::engine::{ActorId, SimTime, Span};
 use desim::experiment::{Ending, Experiment, ExperimentError, Parts};
 use desim::export::{Folder, Manifest, Pictures, write};
+use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
 use desim::metrics::{
-    ConnectivitySample, LatencyHistogram, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord, Volume,
+    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotState, TopicFates,
+    TrafficRow, TrialRecord, Volume,
 };
 use desim::scenario::{Scenario, parse};
 use tokio_util::sync::CancellationToken;
@@ -52,6 +54,8 @@ pub fn record(trial: u32) -> TrialRecord {
             .collect(),
         latency,
         suspicions: u64::from(trial),
+        faults: faults(trial),
+        healing: healing(trial),
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
         robots: (0..ROBOTS).map(|robot| state(robot, odd)).collect(),
         trajectories: (0..SAMPLES)
@@ -61,7 +65,7 @@ pub fn record(trial: u32) -> TrialRecord {
 }
 
 fn fates(topic: u64, trial: u32) -> TopicFates {
-    let lost = [20 + topic + u64::from(trial)];
+    let lost = [15 + topic + u64::from(trial), 2, 3];
     TopicFates {
         offered: 103 + topic + u64::from(trial),
         delivered: 80,
@@ -82,7 +86,53 @@ fn traffic(robot: u32, topic: u8, trial: u32) -> TrafficRow {
         topic,
         sent: volume(600),
         received: volume(u64::from(4000 + 10 * robot + trial)),
-        lost: [volume(u64::from(robot))],
+        lost: [robot, 0, robot % 2].map(|frames| volume(frames.into())),
+    }
+}
+
+/// Robot 3 falls silent in every second trial, and recovers in every fourth; a partition comes and goes in the others.
+fn faults(trial: u32) -> Vec<FaultEpisode> {
+    let until = (trial % 4 != 2).then_some(SimTime::from_secs(50.0));
+    let kind = if trial % 2 == 0 {
+        FaultKind::Robot {
+            robot: ActorId(3),
+            effect: Effect::Silence,
+            role: 2,
+            target: Some(0),
+        }
+    } else {
+        FaultKind::Partition
+    };
+    vec![FaultEpisode {
+        fault: 1,
+        kind,
+        from: SimTime::from_secs(20.0),
+        until,
+    }]
+}
+
+/// What robot 3 leaves behind is mended in every fourth trial; another failure did no harm.
+fn healing(trial: u32) -> Vec<HealingEpisode> {
+    let episode = |at: f64, healed: Option<f64>| HealingEpisode {
+        fault: 1,
+        robot: ActorId(3),
+        role: 2,
+        target: 0,
+        failed_at: SimTime::from_secs(at),
+        links_before: 1,
+        links_after: u32::from(healed == Some(at)),
+        held_before: true,
+        healed_at: healed.map(SimTime::from_secs),
+        overlapping: trial % 3,
+        distance_m: f64::from(trial) / 7.0,
+        frames: vec![300, u64::from(trial), 5, 6],
+        payload_bytes: vec![1200, 4 * u64::from(trial), 60, 70],
+    };
+    let mended = (trial % 4 == 0).then(|| 30.3 + f64::from(trial));
+    if trial % 2 == 0 {
+        vec![episode(20.0, mended), episode(21.5, Some(21.5))]
+    } else {
+        Vec::new()
     }
 }
 

@@ -77,8 +77,10 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
     let expected = [
         "bandwidth.parquet",
         "connectivity.parquet",
+        "faults.parquet",
         "final_0.svg",
         "frames.parquet",
+        "healing.parquet",
         "latency.parquet",
         "robots.parquet",
         "summary.json",
@@ -238,6 +240,29 @@ fn tables_read_back_as_they_were_recorded() {
     assert_eq!(
         column(&rows(dir.path(), "connectivity.parquet")[3], "links_1"),
         Field::Int(0)
+    );
+    let faults = rows(dir.path(), "faults.parquet");
+    let fault = |row: usize| ["kind", "robot", "role", "until_s"].map(|name| column(&faults[row], name));
+    let text = |text: &str| Field::Str(text.to_owned());
+    assert_eq!(
+        fault(0),
+        [text("silence"), Field::Int(3), text("networker"), Field::Double(50.0)]
+    );
+    assert_eq!(
+        fault(1),
+        [text("partition"), Field::Null, Field::Null, Field::Double(50.0)]
+    );
+    let healing = rows(dir.path(), "healing.parquet");
+    let wound = |row: usize| ["healed_s", "watched_s", "request_frames"].map(|name| column(&healing[row], name));
+    assert_eq!(
+        wound(2),
+        [Field::Null, Field::Double(40.0), Field::Long(2)],
+        "never mended in trial 2"
+    );
+    assert_eq!(
+        wound(3),
+        [Field::Double(21.5), Field::Double(0.0), Field::Long(2)],
+        "harmless"
     );
     assert_eq!(rows(dir.path(), "trajectories.parquet").len(), 9 * 12 * TRIALS as usize);
 }

@@ -3,7 +3,7 @@
 use svg::Document;
 
 use super::canvas::Canvas;
-use super::style::{self, LINK, TARGET};
+use super::style::{self, FAILED, LINK, TARGET};
 use super::{Scene, obstacles, subtitle};
 use crate::geometry::Vec2;
 use crate::metrics::{RobotState, TrialRecord};
@@ -30,21 +30,28 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
             style::role(scene.role(robot.role), robot.role.into()),
         );
     }
+    let failed = record.failed_at_end();
+    for robot in &failed {
+        canvas.mark(robots[robot.index()].pose.position, FAILED);
+    }
     if robots.len() <= MOST_LABELS {
         for (number, robot) in robots.iter().enumerate() {
             canvas.label(robot.pose.position, &number.to_string());
         }
     }
-    legend(&mut canvas, scene, robots, &targets);
+    legend(&mut canvas, scene, robots, &targets, failed.len());
     canvas.finish()
 }
 
-fn legend(canvas: &mut Canvas, scene: &Scene, robots: &[RobotState], targets: &[u16]) {
+fn legend(canvas: &mut Canvas, scene: &Scene, robots: &[RobotState], targets: &[u16], failed: usize) {
     for (number, name) in scene.roles.iter().enumerate() {
         let count = robots.iter().filter(|robot| usize::from(robot.role) == number).count();
         if count > 0 {
             canvas.legend_mark(style::role(name, number), &format!("{name} ({count})"));
         }
+    }
+    if failed > 0 {
+        canvas.legend_mark(FAILED, &format!("failed ({failed})"));
     }
     if !scene.targets.is_empty() {
         canvas.legend_mark(

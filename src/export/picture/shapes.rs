@@ -74,6 +74,7 @@ pub fn marker(at: Vec2, look: Marker) -> Element {
         ),
         Shape::Triangle => polygon(at, size * 1.25, &[90.0, 210.0, 330.0], filled),
         Shape::Target => target(at, look),
+        Shape::Cross => cross(at, look),
     }
 }
 
@@ -102,6 +103,17 @@ fn target(at: Vec2, look: Marker) -> Element {
     group.append(stroked(circle(at, look.size, []), stroke));
     group.append(path(&arms, stroke));
     group
+}
+
+/// Two slanting strokes.
+fn cross(at: Vec2, look: Marker) -> Element {
+    let stroke = Stroke {
+        colour: look.colour,
+        width: 2.4,
+        opacity: 1.0,
+    };
+    let arms = [Vec2::new(1.0, 1.0), Vec2::new(1.0, -1.0)];
+    path(&arms.map(|arm| (at - arm * look.size, at + arm * look.size)), stroke)
 }
 
 fn stroked(mut element: Element, stroke: Stroke) -> Element {

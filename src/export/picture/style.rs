@@ -24,6 +24,8 @@ pub enum Shape {
     Triangle,
     /// Upright cross in a circle: a place, not a robot.
     Target,
+    /// Slanting cross.
+    Cross,
 }
 
 /// A marker's look.
@@ -54,6 +56,13 @@ pub const TARGET: Marker = Marker {
     shape: Shape::Target,
     colour: "#c00000",
     size: 11.0,
+};
+
+/// A robot that has failed, over its role's mark.
+pub const FAILED: Marker = Marker {
+    shape: Shape::Cross,
+    colour: "#8c8c8c",
+    size: 6.5,
 };
 
 /// One of `links` links: the more there are, the fainter, so that what lies under a dense swarm's stays in sight.

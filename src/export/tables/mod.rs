@@ -2,7 +2,9 @@
 
 mod bandwidth;
 mod connectivity;
+mod faults;
 mod frames;
+mod healing;
 mod latency;
 mod robots;
 mod trajectories;
@@ -25,11 +27,13 @@ pub struct Tables {
     connectivity: Table<connectivity::Row>,
     robots: Table<robots::Row>,
     trajectories: Table<trajectories::Row>,
+    faults: Table<faults::Row>,
+    healing: Table<healing::Row>,
 }
 
 impl Tables {
     /// Names of the files.
-    pub const FILES: [&str; 7] = [
+    pub const FILES: [&str; 9] = [
         "trials.parquet",
         "frames.parquet",
         "bandwidth.parquet",
@@ -37,6 +41,8 @@ impl Tables {
         "connectivity.parquet",
         "robots.parquet",
         "trajectories.parquet",
+        "faults.parquet",
+        "healing.parquet",
     ];
 
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
@@ -54,6 +60,8 @@ impl Tables {
             connectivity: Table::create(&path(4), connectivity::columns(&names, targets))?,
             robots: Table::create(&path(5), robots::columns())?,
             trajectories: Table::create(&path(6), trajectories::columns())?,
+            faults: Table::create(&path(7), faults::columns())?,
+            healing: Table::create(&path(8), healing::columns(&names))?,
         })
     }
 
@@ -68,7 +76,9 @@ impl Tables {
         self.latency.extend(latency::rows(record))?;
         self.connectivity.extend(connectivity::rows(record))?;
         self.robots.extend(robots::rows(record, &self.names))?;
-        self.trajectories.extend(trajectories::rows(record))
+        self.trajectories.extend(trajectories::rows(record))?;
+        self.faults.extend(faults::rows(record, &self.names))?;
+        self.healing.extend(healing::rows(record, &self.names))
     }
 
     /// Ends every file.
@@ -82,6 +92,8 @@ impl Tables {
         self.latency.finish()?;
         self.connectivity.finish()?;
         self.robots.finish()?;
-        self.trajectories.finish()
+        self.trajectories.finish()?;
+        self.faults.finish()?;
+        self.healing.finish()
     }
 }

@@ -3,10 +3,12 @@
 //! Everything here follows from the records alone and depends on no machine. Keys and their order are stable.
 
 mod bandwidth;
+mod faults;
 mod frames;
 mod quantity;
 
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
+pub use faults::{FaultSummary, Healed, HealingSummary, HealingTime};
 pub use frames::{Fates, Frames};
 pub use quantity::{Measured, Named, Quantity, Unit};
 
@@ -54,6 +56,12 @@ pub struct Summary {
     pub connected_share: Measured,
     /// Robots that a mission took, those that ended in another role than the first: mean over trials.
     pub robots_used: Measured,
+    /// What failed; absent if nothing did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faults: Option<FaultSummary>,
+    /// How targets got their links back; absent if no robot failed that worked for one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub healing: Option<HealingSummary>,
     /// Control steps simulated, over all trials.
     pub steps: Quantity<u64>,
     /// Time simulated, over all trials.
@@ -127,6 +135,8 @@ impl Summary {
                 estimate: mean_over_trials(records, |record| record.robots_used().map(|robots| robots as f64)),
                 unit: "robots".into(),
             },
+            faults: FaultSummary::of(roles, records),
+            healing: HealingSummary::of(topics, roles, records),
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
                 unit: STEPS.into(),

@@ -99,9 +99,8 @@ pub struct Parameters {
     pub strand_every: u64,
     pub request_every: u64,
     pub healing_patience: u64,
-    /// Silence after which a neighbour is no longer counted on.
-    pub silence: Span,
     pub silence_steps: u64,
+    pub detector: DetectorConfig,
 }
 
 impl Mission {
@@ -204,7 +203,6 @@ impl Parameters {
         control_period: Span,
     ) -> Self {
         let steps = |seconds: f64| (seconds / control_period.as_secs()).ceil() as u64;
-        let DetectorConfig::Timeout(silence) = detector;
         let law = &config.motion;
         let strand_every = gossip.strand.steps(control_period);
         let request_every = gossip.request.steps(control_period);
@@ -238,8 +236,8 @@ impl Parameters {
             strand_every,
             request_every,
             healing_patience: steps(config.healing.patience.get()),
-            silence: Span::from_secs(silence.get()),
-            silence_steps: steps(silence.get()),
+            silence_steps: steps(detector.longest_silence().as_secs()),
+            detector: detector.clone(),
         }
     }
 }

@@ -38,7 +38,7 @@ use sidestep::Sidestep;
 use view::{Knowledge, View};
 use worker::Worker;
 
-use super::detector::DetectorConfig;
+use super::detector::{Detector, DetectorConfig};
 use super::gossip::GossipConfig;
 use super::{Input, Note, Output, Protocol, Reception, Topic, Wake};
 use crate::engine::{ActorId, SimTime, Span};
@@ -56,6 +56,8 @@ pub struct Backbone {
     previous: Role,
     recruiter: Recruiter,
     sidestep: Sidestep,
+    /// What arrived since the last control step and was read when the detector's timer woke the robot.
+    unread: Vec<Reception<Message>>,
     told: Told,
 }
 
@@ -108,16 +110,18 @@ impl Backbone {
         Self {
             known: Knowledge {
                 id,
-                mission,
                 step: 0,
                 position: Vec2::zeros(),
                 neighbours: Neighbours::default(),
+                detector: Detector::new(&mission.parameters.detector),
+                mission,
                 order: Order::default(),
             },
             duty,
             previous: Role::Free,
             recruiter: Recruiter::default(),
             sidestep: Sidestep::default(),
+            unread: Vec::new(),
             told: Told::default(),
         }
     }
@@ -275,9 +279,10 @@ impl Backbone {
     }
 
     fn control(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
-        self.known
-            .neighbours
-            .forget_before(now - self.known.mission.parameters.silence);
+        let Knowledge {
+            neighbours, detector, ..
+        } = &mut self.known;
+        neighbours.forget(|robot| detector.suspected_before(now, robot));
         self.change_duty(&input.proximity);
         let desired = self.act(&input.proximity, &mut output.broadcasts);
         let parameters = &self.known.mission.parameters;
@@ -455,6 +460,7 @@ impl Protocol for Backbone {
     type Codec = BackboneCodec;
     const TOPICS: &'static [&'static str] = &["status", "request", "parent strand", "child strand"];
     const ROLES: &'static [&'static str] = &["free", "root", "networker", "worker"];
+    const STATUS: Option<Topic> = Some(Topic(0));
 
     fn topic(message: &Message) -> Topic {
         Topic(match message {
@@ -466,8 +472,21 @@ impl Protocol for Backbone {
     }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
-        self.known.position = input.pose.position;
         for reception in &input.inbox {
+            if matches!(reception.frame.message, Message::Status(_)) {
+                self.known.detector.hear(reception, output);
+            }
+        }
+        if input.wake == Wake::Timer(Detector::TIMER) {
+            // Believing is all that it does between control steps: what it read, and what follows from a suspicion, wait
+            // for the next one.
+            self.known.detector.expire(now, output);
+            self.unread.append(&mut input.inbox);
+            return;
+        }
+        self.known.position = input.pose.position;
+        let unread = std::mem::take(&mut self.unread);
+        for reception in unread.iter().chain(&input.inbox) {
             self.hear(reception, &mut output.broadcasts);
         }
         if input.wake == Wake::ControlStep {

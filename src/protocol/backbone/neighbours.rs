@@ -71,11 +71,11 @@ impl Neighbours {
         self.rows.is_empty()
     }
 
-    /// Forgets those not heard since `then`.
-    pub fn forget_before(&mut self, then: SimTime) {
+    /// Forgets those that are `down`.
+    pub fn forget(&mut self, down: impl Fn(ActorId) -> bool) {
         let mut row = 0;
         while row < self.rows.len() {
-            if self.rows[row].heard >= then {
+            if !down(self.rows[row].id) {
                 row += 1;
                 continue;
             }
@@ -121,9 +121,8 @@ mod tests {
                     hear(&mut neighbours, id, step as u32, now, x);
                     model.insert(id, (SimTime::from_secs(now), x));
                 } else {
-                    let then = SimTime::from_secs(now - 1.0);
-                    neighbours.forget_before(then);
-                    model.retain(|_, (heard, _)| *heard >= then);
+                    neighbours.forget(|robot| robot.0 % 5 == id % 5);
+                    model.retain(|robot, _| robot % 5 != id % 5);
                 }
                 prop_assert_eq!(neighbours.iter().count(), model.len());
                 for id in 0..12 {

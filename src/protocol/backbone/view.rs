@@ -8,6 +8,7 @@ use crate::geometry::Vec2;
 use super::message::{Order, Role};
 use super::mission::{Mission, Parameters};
 use super::neighbours::{Neighbour, Neighbours};
+use crate::protocol::detector::Detector;
 
 /// What a robot knows whatever its role.
 #[derive(Debug)]
@@ -22,6 +23,8 @@ pub struct Knowledge {
     pub position: Vec2,
     /// Whom it heard of late.
     pub neighbours: Neighbours,
+    /// Whom it believes to be down.
+    pub detector: Detector,
     /// The newest order that it knows of.
     pub order: Order,
 }
