@@ -44,15 +44,19 @@ impl Break {
     }
 }
 
-/// Whether `known` can be the parent of this robot in `chain`: a relay of it within reach and nearer to the root, by
-/// which no two robots ever choose each other.
+/// Whether `known` can be the parent of this robot in `chain`: a relay of it within reach. Of a relay itself, which knows
+/// `descendants` on the side of the worker, none of these can, and none that is farther from the root, by which no two
+/// relays ever choose each other. A worker, of which nobody descends, has `None`.
 #[must_use]
-pub fn can_serve(view: &View<'_>, known: &Neighbour, chain: u8) -> bool {
+pub fn can_serve(view: &View<'_>, known: &Neighbour, chain: u8, descendants: Option<&[ActorId]>) -> bool {
     let from_root = |place: Vec2| (place - view.mission.origin).norm_squared();
+    let is_upstream = |descendants: &[ActorId]| {
+        !descendants.contains(&known.id) && from_root(known.position) < from_root(view.position)
+    };
     known.status.role == Role::Networker
         && known.status.chain == chain
         && (known.position - view.position).norm() <= view.parameters().critical
-        && from_root(known.position) < from_root(view.position)
+        && descendants.is_none_or(is_upstream)
 }
 
 /// The velocity, without avoidance, of a robot at a break that goes `way` while `ties` lead to those that it must not

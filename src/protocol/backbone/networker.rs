@@ -215,7 +215,7 @@ impl Networker {
     /// One control step: recruits where the chain must grow, and answers with the velocity that it wants.
     pub fn control(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) -> Vec2 {
         let wanted = self.wants_parent(view);
-        self.slot.tend(view, wanted, &self.outer, recruiter, out);
+        self.slot.tend(view, wanted, Some(&self.outer), recruiter, out);
         if !self.linked {
             self.joining(view)
         } else if !view.expands(self.slot.chain) {

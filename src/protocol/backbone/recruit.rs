@@ -84,14 +84,12 @@ impl Recruiter {
             .map(|known| known.id)
     }
 
-    /// The robot that can serve as a parent in `chain` and is farthest from the root, but for `descendants` and those
-    /// asked lately: the farther out it is, the less the chain need come in.
-    fn bridge(&mut self, view: &View<'_>, chain: u8, descendants: &[ActorId]) -> Option<ActorId> {
+    /// The robot that can serve as a parent in `chain` and is farthest from the root, but for those asked lately: the farther out it is, the less the chain need come in.
+    fn bridge(&mut self, view: &View<'_>, chain: u8, descendants: Option<&[ActorId]>) -> Option<ActorId> {
         self.asked.retain(|(_, until)| *until > view.step);
         view.neighbours
             .iter()
-            .filter(|known| heal::can_serve(view, known, chain))
-            .filter(|known| !descendants.contains(&known.id) && !self.was_asked(known.id))
+            .filter(|known| heal::can_serve(view, known, chain, descendants) && !self.was_asked(known.id))
             .max_by(|a, b| {
                 let distance = |position: Vec2| (position - view.mission.origin).norm_squared();
                 let farther = distance(a.position).total_cmp(&distance(b.position));
@@ -164,17 +162,17 @@ impl Slot {
     }
 
     /// Does what a control step asks for: drops what is over, mends a break, swaps in a joiner that is in place, and
-    /// recruits where one is `wanted`. The `descendants` are those on the side of the worker.
+    /// recruits where one is `wanted`. The `descendants` of a relay are those on the side of the worker.
     pub fn tend(
         &mut self,
         view: &View<'_>,
         wanted: bool,
-        descendants: &[ActorId],
+        descendants: Option<&[ActorId]>,
         recruiter: &mut Recruiter,
         out: &mut Vec<Message>,
     ) {
         self.give_up_a_lost_parent(view);
-        self.mend(view);
+        self.mend(view, descendants);
         self.settle_invitation(view, wanted);
         if self.invitation.is_none() {
             self.invite(view, wanted, descendants, recruiter);
@@ -205,11 +203,11 @@ impl Slot {
     }
 
     /// Takes up an offer to become the parent.
-    fn mend(&mut self, view: &View<'_>) {
+    fn mend(&mut self, view: &View<'_>, descendants: Option<&[ActorId]>) {
         let Some(broken) = &mut self.broken else { return };
         broken.look_around(view);
         let offer = broken.offer.and_then(|robot| view.neighbours.get(robot));
-        if let Some(parent) = offer.filter(|known| heal::can_serve(view, known, self.chain)) {
+        if let Some(parent) = offer.filter(|known| heal::can_serve(view, known, self.chain, descendants)) {
             let root = view.mission.root;
             *self = Self::new(self.chain, root);
             self.link_to(parent.id, root);
@@ -224,7 +222,7 @@ impl Slot {
     }
 
     /// Asks the other end of a break if one is in sight; at the root, asks a free robot if one is wanted.
-    fn invite(&mut self, view: &View<'_>, wanted: bool, descendants: &[ActorId], recruiter: &mut Recruiter) {
+    fn invite(&mut self, view: &View<'_>, wanted: bool, descendants: Option<&[ActorId]>, recruiter: &mut Recruiter) {
         if self.broken.is_some() {
             if let Some(other_end) = recruiter.bridge(view, self.chain, descendants) {
                 self.invitation = Some(recruiter.invite(view, other_end, Kind::Adopt));

@@ -86,7 +86,7 @@ impl Worker {
         let need = self.need(view);
         for slot in &mut self.slots {
             let wanted = need && lacks_relay(slot, view) && slot.is_out_enough(view);
-            slot.tend(view, wanted, &[], recruiter, out);
+            slot.tend(view, wanted, None, recruiter, out);
         }
         if !view.order.expands(self.target) {
             self.retreating(view)
