@@ -250,7 +250,7 @@ fn the_shipped_examples_of_faults_run_and_something_fails() {
     let examples = shipped::files().into_iter().filter(|file| file.starts_with(&folder));
     let mut seen = 0;
     for file in examples {
-        let sets = ["time_limit=100.0", "metrics.hold=5.0"].map(|set| set.parse().expect("a valid override"));
+        let sets = ["time_limit=150.0", "metrics.hold=145.0"].map(|set| set.parse().expect("a valid override"));
         let scenario = load(&file, &sets).unwrap_or_else(|report| panic!("{report}"));
         let record = run(&scenario);
         assert!(!record.faults.is_empty(), "nothing failed in {}", file.display());
