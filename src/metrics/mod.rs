@@ -2,6 +2,7 @@
 
 mod config;
 mod connectivity;
+pub mod detection;
 mod faults;
 mod latency;
 mod mission;
@@ -16,7 +17,9 @@ pub use config::MetricsConfig;
 pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget, Progress};
-pub use record::{ConnectivitySample, FaultEpisode, FaultKind, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord, Volume};
+pub use record::{
+    ConnectivitySample, FaultEpisode, FaultKind, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord, Volume,
+};
 pub use recorder::{Layout, Recorder, RunEnd};
 pub use statistics::Estimate;
 pub use summary::Summary;

@@ -38,7 +38,11 @@ impl Problem {
 
     /// A problem that a section found in itself, at a path relative to it.
     fn of_section(section: &str, (path, message): (String, String)) -> Self {
-        let dot = if path.is_empty() || path.starts_with('[') { "" } else { "." };
+        let dot = if path.is_empty() || path.starts_with('[') {
+            ""
+        } else {
+            "."
+        };
         let path = FieldPath::of(&format!("{section}{dot}{path}"));
         Self {
             message: format!("`{path}`: {message}"),

@@ -51,7 +51,8 @@ pub fn record(trial: u32) -> TrialRecord {
             .flat_map(|robot| (0..2).map(move |topic| traffic(robot, topic, trial)))
             .collect(),
         latency,
-        suspicions: u64::from(trial),
+        detection: DetectionRecord::default(),
+        trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
         robots: (0..ROBOTS).map(|robot| state(robot, odd)).collect(),
         trajectories: (0..SAMPLES)

@@ -2,6 +2,7 @@
 
 mod bandwidth;
 mod connectivity;
+mod detection;
 mod frames;
 mod latency;
 mod robots;
@@ -23,13 +24,14 @@ pub struct Tables {
     bandwidth: Table<bandwidth::Row>,
     latency: Table<latency::Row>,
     connectivity: Table<connectivity::Row>,
+    detection: Table<detection::Row>,
     robots: Table<robots::Row>,
     trajectories: Table<trajectories::Row>,
 }
 
 impl Tables {
     /// Names of the files.
-    pub const FILES: [&str; 7] = [
+    pub const FILES: [&str; 8] = [
         "trials.parquet",
         "frames.parquet",
         "bandwidth.parquet",
@@ -37,6 +39,7 @@ impl Tables {
         "connectivity.parquet",
         "robots.parquet",
         "trajectories.parquet",
+        "detection.parquet",
     ];
 
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
@@ -54,6 +57,7 @@ impl Tables {
             connectivity: Table::create(&path(4), connectivity::columns(&names, targets))?,
             robots: Table::create(&path(5), robots::columns())?,
             trajectories: Table::create(&path(6), trajectories::columns())?,
+            detection: Table::create(&path(7), detection::columns())?,
         })
     }
 
@@ -67,6 +71,7 @@ impl Tables {
         self.bandwidth.extend(bandwidth::rows(record, &self.names))?;
         self.latency.extend(latency::rows(record))?;
         self.connectivity.extend(connectivity::rows(record))?;
+        self.detection.extend(detection::rows(record))?;
         self.robots.extend(robots::rows(record, &self.names))?;
         self.trajectories.extend(trajectories::rows(record))
     }
@@ -81,6 +86,7 @@ impl Tables {
         self.bandwidth.finish()?;
         self.latency.finish()?;
         self.connectivity.finish()?;
+        self.detection.finish()?;
         self.robots.finish()?;
         self.trajectories.finish()
     }

@@ -3,10 +3,12 @@
 //! Everything here follows from the records alone and depends on no machine. Keys and their order are stable.
 
 mod bandwidth;
+mod detection;
 mod frames;
 mod quantity;
 
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
+pub use detection::{Detection, Failures, Suspicions};
 pub use frames::{Fates, Frames};
 pub use quantity::{Measured, Named, Quantity, Unit};
 
@@ -54,6 +56,8 @@ pub struct Summary {
     pub connected_share: Measured,
     /// Robots that a mission took, those that ended in another role than the first: mean over trials.
     pub robots_used: Measured,
+    /// Failure detection, against the truth.
+    pub detection: Detection,
     /// Control steps simulated, over all trials.
     pub steps: Quantity<u64>,
     /// Time simulated, over all trials.
@@ -127,6 +131,7 @@ impl Summary {
                 estimate: mean_over_trials(records, |record| record.robots_used().map(|robots| robots as f64)),
                 unit: "robots".into(),
             },
+            detection: Detection::of(records),
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
                 unit: STEPS.into(),

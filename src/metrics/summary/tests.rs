@@ -27,6 +27,8 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
             root: ActorId(0),
             worker_role: Role(1),
         }),
+        status_memory: Span::from_secs(8.0),
+        trace: None,
     };
     let mut recorder = Recorder::new(layout, &MetricsConfig::default());
     for frame in 0..10 {
