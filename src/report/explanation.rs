@@ -330,14 +330,14 @@ fn tell_alike(group: &[Status], text: &mut String) {
             .reduce(of)
             .unwrap_or(f32::NAN)
     };
-    let far = format!("{:.2} to {:.2} m", range(f32::min), range(f32::max));
+    let far = format!("{:.3} to {:.3} m", range(f32::min), range(f32::max));
     let what = fate(first, &format!("out of range, {far} away"));
     let sent = format!("{:.3} to {:.3} s", first.sent_s, last.sent_s);
     line(text, &format!("   {sent:>24}  {:>4} statuses {what}", group.len()));
 }
 
 fn tell_one(status: &Status, text: &mut String) {
-    let what = fate(status, &format!("out of range, {:.2} m away", status.distance_m));
+    let what = fate(status, &format!("out of range, {:.3} m away", status.distance_m));
     line(text, &format!("   {:>22.3} s       status {what}", status.sent_s));
 }
 
