@@ -89,7 +89,7 @@ def kaplan_meier(times):
                 levels = [0.0] * 3
             found = [f if f is not None else (float(time) if s <= 0.5 else None) for f, s in zip(found, levels)]
         at_risk -= sum(1 for t, _ in times if t == time)
-    return estimate(*found, n=len(times))
+    return estimate(*(found if len(times) > 1 else [found[0], None, None]), n=len(times))
 
 
 def ratio(parts):

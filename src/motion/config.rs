@@ -75,7 +75,7 @@ pub struct MotionConfig {
     /// Length of a motion tick in seconds; velocity is constant within it. A command is taken up at the next tick.
     pub tick: Positive,
     /// Largest linear speed in m/s, below `body_radius / tick` (Khepera IV: 0.5 in use, 0.8 at most). The paper does not
-    /// state it: 0.03 is calibrated to its completion times.
+    /// state it: 0.026 is calibrated, on its 1,400 steps for 20 robots with one link alone.
     pub max_speed: Positive,
     /// Largest turning rate in degrees per second, less than half a turn in a tick. 180 takes wheels of 0.16 m/s at a
     /// Khepera IV's axle of 0.105 m.
@@ -95,7 +95,7 @@ impl Default for MotionConfig {
     fn default() -> Self {
         Self {
             tick: Positive::new(0.1),
-            max_speed: Positive::new(0.03),
+            max_speed: Positive::new(0.026),
             max_turn_rate: Positive::new(180.0),
             body_radius: Positive::new(0.07),
             linear: PidConfig::proportional(5.0),

@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn a_turn_in_place_settles_within_a_degree_in_two_seconds_and_never_overshoots() {
         let mut drive = Drive::new(0.0);
-        drive.command(unit(PI * 0.99) * 0.03);
+        drive.command(unit(PI * 0.99) * 0.026);
         let mut error = PI * 0.99;
         for _ in 0..20 {
             drive.steer(&chassis());
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn a_robot_that_faces_away_turns_before_it_drives() {
         let mut drive = Drive::new(PI);
-        drive.command(Vec2::new(0.03, 0.0));
+        drive.command(Vec2::new(0.026, 0.0));
         for _ in 0..4 {
             assert_eq!(drive.steer(&chassis()), Vec2::zeros());
             drive.turn(&chassis());
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn a_robot_asked_to_stand_brakes_to_rest_and_keeps_its_heading() {
         let mut drive = Drive::new(0.5);
-        drive.command(unit(0.5) * 0.03);
+        drive.command(unit(0.5) * 0.026);
         for _ in 0..20 {
             drive.steer(&chassis());
             drive.turn(&chassis());
@@ -209,7 +209,7 @@ mod tests {
                 let before = drive.heading(0.0);
                 let velocity = drive.steer(&chassis);
                 drive.turn(&chassis);
-                prop_assert!(velocity.norm() <= 0.03 + 1e-15);
+                prop_assert!(velocity.norm() <= 0.026 + 1e-15);
                 let turned = wrap_angle(drive.heading(0.0) - before).abs();
                 prop_assert!(turned <= 18_f64.to_radians() + 1e-12);
             }

@@ -16,20 +16,16 @@ pub(super) struct Grid {
     cells_per_metre: f64,
     columns: usize,
     rows: usize,
-    /// Where each cell's points begin in `points`; one more marks the end.
+    /// Where each cell's points begin in the three arrays of points; one more marks the end.
     starts: Vec<u32>,
-    points: Vec<Point>,
+    /// Points by cell: their positions, which every search reads, apart from what only the near ones are asked for.
+    positions: Vec<Vec2>,
+    velocities: Vec<Vec2>,
+    ids: Vec<u32>,
     /// The largest speed among the points.
     fastest: f64,
     /// The cell of each point in order of id, while building.
     cell_of: Vec<u32>,
-}
-
-#[derive(Clone, Copy)]
-struct Point {
-    position: Vec2,
-    velocity: Vec2,
-    id: u32,
 }
 
 impl Grid {
@@ -43,7 +39,9 @@ impl Grid {
             columns: 1,
             rows: 1,
             starts: vec![0, 0],
-            points: Vec::new(),
+            positions: Vec::new(),
+            velocities: Vec::new(),
+            ids: Vec::new(),
             fastest: 0.0,
             cell_of: Vec::new(),
         }
@@ -61,35 +59,42 @@ impl Grid {
     /// grid was built: with its number and where it is then, relative to `centre`. The order depends on nothing but
     /// what the grid was built from.
     ///
-    /// Whether a point is near is as good as random, and a wrong guess of the processor costs more than the test: so near
-    /// points are first noted without a branch, over all rows, then visited.
+    /// Whether a point is near is as good as random, and a wrong guess of the processor costs more than the test: so points
+    /// that may be near are first noted without a branch, over all rows, then visited.
     #[inline]
     pub(super) fn for_each_within(&self, centre: Vec2, elapsed: f64, range: f64, mut visit: impl FnMut(u32, Vec2)) {
         let reach = range + self.fastest * elapsed + ROUNDING;
-        let limit = range * range;
         let (left, right) = (self.column(centre.x - reach), self.column(centre.x + reach));
         let mut near = [0_u32; BATCH];
         let mut found = 0;
         for row in self.row(centre.y - reach)..=self.row(centre.y + reach) {
             let first = self.starts[row * self.columns + left] as usize;
             let end = self.starts[row * self.columns + right + 1] as usize;
-            for (index, point) in (first..).zip(&self.points[first..end]) {
+            for (index, position) in (first..).zip(&self.positions[first..end]) {
                 near[found] = index as u32;
-                found += usize::from(point.offset(centre, elapsed).norm_squared() <= limit);
+                found += usize::from((position - centre).norm_squared() <= reach * reach);
                 if found == BATCH {
-                    self.visit_all(&near, centre, elapsed, &mut visit);
+                    self.visit_all(&near, centre, elapsed, range, &mut visit);
                     found = 0;
                 }
             }
         }
-        self.visit_all(&near[..found], centre, elapsed, &mut visit);
+        self.visit_all(&near[..found], centre, elapsed, range, &mut visit);
     }
 
+    /// Visits those of the points at `indices` that have come within `range`.
     #[inline]
-    fn visit_all(&self, indices: &[u32], centre: Vec2, elapsed: f64, visit: &mut impl FnMut(u32, Vec2)) {
+    fn visit_all(&self, indices: &[u32], centre: Vec2, elapsed: f64, range: f64, visit: &mut impl FnMut(u32, Vec2)) {
         for &index in indices {
-            let point = &self.points[index as usize];
-            visit(point.id, point.offset(centre, elapsed));
+            let index = index as usize;
+            let mut position = self.positions[index];
+            if self.fastest > 0.0 {
+                position += self.velocities[index] * elapsed;
+            }
+            let offset = position - centre;
+            if offset.norm_squared() <= range * range {
+                visit(self.ids[index], offset);
+            }
         }
     }
 
@@ -138,29 +143,17 @@ impl Grid {
 
     /// Fills the cells from their ends, the last point first: within a cell, points stand in order of id.
     fn place(&mut self, positions: &[Vec2], velocities: &[Vec2]) {
-        let nowhere = Point {
-            position: Vec2::zeros(),
-            velocity: Vec2::zeros(),
-            id: 0,
-        };
-        self.points.resize(positions.len(), nowhere);
+        self.positions.resize(positions.len(), Vec2::zeros());
+        self.velocities.resize(positions.len(), Vec2::zeros());
+        self.ids.resize(positions.len(), 0);
         for (id, &cell) in self.cell_of.iter().enumerate().rev() {
             let slot = &mut self.starts[cell as usize];
             *slot -= 1;
-            self.points[*slot as usize] = Point {
-                position: positions[id],
-                velocity: velocities[id],
-                id: id as u32,
-            };
+            let index = *slot as usize;
+            self.positions[index] = positions[id];
+            self.velocities[index] = velocities[id];
+            self.ids[index] = id as u32;
         }
-    }
-}
-
-impl Point {
-    /// Where it is `elapsed` seconds after the grid was built, relative to `centre`.
-    #[inline]
-    fn offset(&self, centre: Vec2, elapsed: f64) -> Vec2 {
-        self.position + self.velocity * elapsed - centre
     }
 }
 

@@ -74,9 +74,9 @@ fn a_straight_drive_covers_exactly_the_speed_times_the_time() {
     for _ in 0..101 {
         world.advance();
     }
-    // The first tick takes the command up; the n-th of the 100 ticks after that is driven at 0.03 (1 − 0.5ⁿ) m/s, for
+    // The first tick takes the command up; the n-th of the 100 ticks after that is driven at 0.026 (1 − 0.5ⁿ) m/s, for
     // the commanded 1 m/s is beyond the largest speed. The missing shares 0.5ⁿ add up to 1 − 0.5¹⁰⁰.
-    let expected = 0.03 * 0.1 * (100.0 - 1.0);
+    let expected = 0.026 * 0.1 * (100.0 - 1.0);
     assert!((world.positions()[0] - Vec2::new(expected, 0.0)).norm() < 1e-12);
     assert_eq!(world.now(), SimTime::from_secs(10.1));
 }
@@ -84,7 +84,7 @@ fn a_straight_drive_covers_exactly_the_speed_times_the_time() {
 #[test]
 fn a_command_is_taken_up_at_the_next_tick_and_no_earlier() {
     let mut world = World::new(&MotionConfig::default(), &square(10.0), vec![pose(0.0, 0.0, 0.0)], 2.0);
-    world.command(ActorId(0), Vec2::new(0.03, 0.0));
+    world.command(ActorId(0), Vec2::new(0.026, 0.0));
     assert_eq!(world.position(ActorId(0), SimTime::from_secs(0.09)), Vec2::zeros());
     world.advance();
     assert_eq!(world.positions()[0], Vec2::zeros());
@@ -94,7 +94,7 @@ fn a_command_is_taken_up_at_the_next_tick_and_no_earlier() {
 #[test]
 fn a_robot_that_faces_away_ends_on_course_in_its_direction() {
     let mut world = World::new(&MotionConfig::default(), &square(10.0), vec![pose(0.0, 0.0, PI)], 2.0);
-    world.command(ActorId(0), unit(0.3) * 0.03);
+    world.command(ActorId(0), unit(0.3) * 0.026);
     for _ in 0..50 {
         world.advance();
     }
@@ -102,7 +102,7 @@ fn a_robot_that_faces_away_ends_on_course_in_its_direction() {
     assert!((pose.heading - 0.3).abs() < 1e-6);
     let before = world.positions()[0];
     world.advance();
-    assert!((world.positions()[0] - before - unit(0.3) * 0.003).norm() < 1e-8);
+    assert!((world.positions()[0] - before - unit(0.3) * 0.0026).norm() < 1e-8);
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn a_world_at_rest_only_lets_time_pass_and_is_never_rebuilt() {
     assert_eq!(world.pose(ActorId(0), world.now()), pose(1.0, 1.0, 0.5));
     assert_eq!(world.rebuilds(), 1);
 
-    world.command(ActorId(0), Vec2::new(0.03, 0.0));
+    world.command(ActorId(0), Vec2::new(0.026, 0.0));
     world.advance();
     world.command(ActorId(0), Vec2::zeros());
     (0..40).for_each(|_| world.advance());

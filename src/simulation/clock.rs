@@ -1,57 +1,82 @@
-//! When a robot wakes next: its control step, its timers, and arrivals where the scenario wakes it for them.
+//! When robots wake: the control steps of all, and each robot's own timers and arrivals.
 
-use crate::engine::{SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span};
 use crate::protocol::{TimerId, Wake};
 
-/// One robot's alarm clock.
+/// The control steps of all robots. Each robot has a phase of its own and all have one period, so the order in which they
+/// take their steps never changes: a ring, sorted once, where a queue would sort anew at every step.
 #[derive(Debug)]
-pub struct WakeClock {
-    control_step: SimTime,
-    timers: Vec<(TimerId, SimTime)>,
-    arrival: SimTime,
-    /// Whether it is asleep: nothing wakes it.
-    asleep: bool,
-    /// Number of the last batch of wakes that the robot was part of.
-    batch: u64,
+pub struct ControlSteps {
+    /// Each robot with its step of this round or, behind `next`, of the last one; in order of time, then of id.
+    ring: Vec<(SimTime, ActorId)>,
+    next: usize,
+    period: Span,
 }
 
-impl WakeClock {
-    /// A clock whose first control step is at `first_step`.
-    pub fn new(first_step: SimTime) -> Self {
+impl ControlSteps {
+    /// Control steps every `period`, that of robot i first at `first_steps[i]`, which is less than a period.
+    pub fn new(first_steps: &[SimTime], period: Span) -> Self {
+        let robots = (0..).map(ActorId);
+        let mut ring: Vec<_> = first_steps.iter().copied().zip(robots).collect();
+        ring.sort_unstable();
+        debug_assert!(ring.last().is_none_or(|last| last.0 < SimTime::ZERO + period));
+        Self { ring, next: 0, period }
+    }
+
+    /// When the next control step is due; `NEVER` in an empty swarm.
+    pub fn upcoming(&self) -> SimTime {
+        self.ring.get(self.next).map_or(SimTime::NEVER, |step| step.0)
+    }
+
+    /// Takes the next control step if it is due at `now`: the robot whose it is.
+    pub fn take_due(&mut self, now: SimTime) -> Option<ActorId> {
+        let step = self.ring.get_mut(self.next).filter(|step| step.0 <= now)?;
+        step.0 += self.period;
+        let robot = step.1;
+        self.next = (self.next + 1) % self.ring.len();
+        Some(robot)
+    }
+}
+
+/// One robot's alarms: its timers, and arrivals where the scenario wakes it for them.
+#[derive(Debug)]
+pub struct Alarms {
+    timers: Vec<(TimerId, SimTime)>,
+    arrival: SimTime,
+    asleep: bool,
+}
+
+impl Default for Alarms {
+    fn default() -> Self {
         Self {
-            control_step: first_step,
             timers: Vec::new(),
             arrival: SimTime::NEVER,
             asleep: false,
-            batch: 0,
         }
     }
+}
 
-    /// Joins the batch of wakes number `batch`, from 1; says whether the robot was not part of it already.
-    pub fn join(&mut self, batch: u64) -> bool {
-        std::mem::replace(&mut self.batch, batch) != batch
-    }
-
-    /// The next instant at which the robot wakes; `NEVER` while it is asleep.
+impl Alarms {
+    /// The instant of the first alarm; `NEVER` for none, and while the robot is asleep.
     pub fn next(&self) -> SimTime {
         if self.asleep {
             return SimTime::NEVER;
         }
         let timer = self.timers.iter().map(|timer| timer.1).min();
-        self.control_step.min(self.arrival).min(timer.unwrap_or(SimTime::NEVER))
+        self.arrival.min(timer.unwrap_or(SimTime::NEVER))
     }
 
-    /// Takes the reason for which the robot wakes at `now`: a timer before the control step, an arrival last. A control
-    /// step is followed by the next one, a `period` later.
-    pub fn take_due(&mut self, now: SimTime, period: Span) -> Wake {
-        if let Some(due) = self.timers.iter().position(|timer| timer.1 <= now) {
-            return Wake::Timer(self.timers.swap_remove(due).0);
+    /// Takes the alarm for which the robot wakes at `now`: a timer before an arrival.
+    pub fn take_due(&mut self, now: SimTime) -> Wake {
+        match self.timers.iter().position(|timer| timer.1 <= now) {
+            Some(due) => Wake::Timer(self.timers.swap_remove(due).0),
+            None => Wake::Reception,
         }
-        if self.control_step <= now {
-            self.control_step += period;
-            return Wake::ControlStep;
-        }
-        Wake::Reception
+    }
+
+    /// Whether the robot is asleep: nothing wakes it, control steps neither.
+    pub fn is_asleep(&self) -> bool {
+        self.asleep
     }
 
     /// Puts the robot to sleep until it is [resumed](Self::resume).
@@ -59,16 +84,12 @@ impl WakeClock {
         self.asleep = true;
     }
 
-    /// Ends a sleep at `now`: control steps go on in their rhythm, the next one at `now` at the earliest. Timers that ran out
-    /// meanwhile are due at once. Changes nothing for a robot that is not asleep.
-    pub fn resume(&mut self, now: SimTime, period: Span) {
-        if !std::mem::take(&mut self.asleep) {
-            return;
-        }
-        let missed = now.since(self.control_step).as_nanos().div_ceil(period.as_nanos());
-        self.control_step += period * missed;
-        for (_, due) in &mut self.timers {
-            *due = now.max(*due);
+    /// Ends a sleep at `now`, if there is one. Timers that ran out meanwhile are due at once.
+    pub fn resume(&mut self, now: SimTime) {
+        if std::mem::take(&mut self.asleep) {
+            for (_, due) in &mut self.timers {
+                *due = now.max(*due);
+            }
         }
     }
 
@@ -93,64 +114,76 @@ impl WakeClock {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use proptest::prelude::*;
 
-    const PERIOD: Span = Span::from_nanos(100);
+    use super::*;
 
     fn at(nanos: u64) -> SimTime {
         SimTime::from_nanos(nanos)
     }
 
     #[test]
-    fn a_timer_wakes_the_robot_at_its_exact_time_between_control_steps() {
-        let mut clock = WakeClock::new(at(0));
-        assert_eq!(clock.take_due(at(0), PERIOD), Wake::ControlStep);
-        clock.set_timer(TimerId(7), Some(at(42)), at(0));
-        assert_eq!(clock.next(), at(42));
-        assert_eq!(clock.take_due(at(42), PERIOD), Wake::Timer(TimerId(7)));
-        assert_eq!(clock.next(), at(100));
-    }
-
-    #[test]
-    fn a_timer_goes_before_a_control_step_at_the_same_instant_and_both_happen() {
-        let mut clock = WakeClock::new(at(100));
-        clock.set_timer(TimerId(1), Some(at(100)), at(0));
-        assert_eq!(clock.take_due(at(100), PERIOD), Wake::Timer(TimerId(1)));
-        assert_eq!(clock.next(), at(100));
-        assert_eq!(clock.take_due(at(100), PERIOD), Wake::ControlStep);
+    fn a_timer_wakes_the_robot_at_its_exact_time() {
+        let mut alarms = Alarms::default();
+        alarms.set_timer(TimerId(7), Some(at(42)), at(0));
+        assert_eq!(alarms.next(), at(42));
+        assert_eq!(alarms.take_due(at(42)), Wake::Timer(TimerId(7)));
+        assert_eq!(alarms.next(), SimTime::NEVER);
     }
 
     #[test]
     fn setting_a_timer_again_moves_it_and_a_cancelled_one_never_fires() {
-        let mut clock = WakeClock::new(at(100));
-        clock.set_timer(TimerId(1), Some(at(10)), at(0));
-        clock.set_timer(TimerId(1), Some(at(50)), at(0));
-        assert_eq!(clock.next(), at(50));
-        clock.set_timer(TimerId(1), None, at(0));
-        assert_eq!(clock.next(), at(100));
+        let mut alarms = Alarms::default();
+        alarms.set_timer(TimerId(1), Some(at(10)), at(0));
+        alarms.set_timer(TimerId(1), Some(at(50)), at(0));
+        assert_eq!(alarms.next(), at(50));
+        alarms.set_timer(TimerId(1), None, at(0));
+        assert_eq!(alarms.next(), SimTime::NEVER);
     }
 
     #[test]
-    fn a_robot_that_slept_keeps_its_rhythm_and_fires_at_once_what_ran_out_meanwhile() {
-        let mut clock = WakeClock::new(at(30));
-        clock.set_timer(TimerId(1), Some(at(50)), at(0));
-        clock.set_timer(TimerId(2), Some(at(500)), at(0));
-        clock.sleep();
-        assert_eq!(clock.next(), SimTime::NEVER);
-        clock.resume(at(231), PERIOD);
-        assert_eq!(clock.next(), at(231));
-        assert_eq!(clock.take_due(at(231), PERIOD), Wake::Timer(TimerId(1)));
-        assert_eq!(clock.next(), at(330));
-        clock.sleep();
-        clock.resume(at(330), PERIOD);
-        assert_eq!(clock.take_due(at(330), PERIOD), Wake::ControlStep);
+    fn a_timer_goes_before_an_arrival_at_the_same_instant() {
+        let mut alarms = Alarms::default();
+        alarms.set_arrival(at(30));
+        alarms.set_timer(TimerId(1), Some(at(30)), at(0));
+        assert_eq!(alarms.take_due(at(30)), Wake::Timer(TimerId(1)));
+        assert_eq!(alarms.next(), at(30));
+        assert_eq!(alarms.take_due(at(30)), Wake::Reception);
     }
 
     #[test]
-    fn an_arrival_wakes_the_robot_when_nothing_else_is_due() {
-        let mut clock = WakeClock::new(at(100));
-        clock.set_arrival(at(30));
-        assert_eq!(clock.next(), at(30));
-        assert_eq!(clock.take_due(at(30), PERIOD), Wake::Reception);
+    fn a_robot_that_slept_fires_at_once_what_ran_out_meanwhile_and_keeps_its_other_timers() {
+        let mut alarms = Alarms::default();
+        alarms.set_timer(TimerId(1), Some(at(50)), at(0));
+        alarms.set_timer(TimerId(2), Some(at(500)), at(0));
+        alarms.sleep();
+        assert_eq!(alarms.next(), SimTime::NEVER);
+        alarms.resume(at(231));
+        assert_eq!(alarms.next(), at(231));
+        assert_eq!(alarms.take_due(at(231)), Wake::Timer(TimerId(1)));
+        assert_eq!(alarms.next(), at(500));
+    }
+
+    proptest! {
+        #[test]
+        fn control_steps_come_in_order_of_time_then_id_and_each_robot_has_one_a_period(
+            phases in prop::collection::vec(0_u64..20, 1..30), rounds in 1_u64..5,
+        ) {
+            const PERIOD: u64 = 20;
+            let first_steps: Vec<_> = phases.iter().copied().map(at).collect();
+            let mut steps = ControlSteps::new(&first_steps, Span::from_nanos(PERIOD));
+            let mut taken = Vec::new();
+            for now in 0..rounds * PERIOD {
+                while let Some(robot) = steps.take_due(at(now)) {
+                    taken.push((now, robot.0));
+                }
+                prop_assert!(steps.upcoming() > at(now));
+            }
+            let mut expected: Vec<_> = (0..rounds)
+                .flat_map(|round| phases.iter().zip(0..).map(move |(phase, robot)| (round * PERIOD + phase, robot)))
+                .collect();
+            expected.sort_unstable();
+            prop_assert_eq!(taken, expected);
+        }
     }
 }

@@ -62,9 +62,7 @@ impl Digest {
     }
 
     fn words<const N: usize>(&mut self, words: &[u64; N]) {
-        for word in words {
-            self.0.update(&word.to_le_bytes());
-        }
+        self.0.update(words.map(u64::to_le_bytes).as_flattened());
     }
 }
 

@@ -3,7 +3,7 @@
 use tokio_util::sync::CancellationToken;
 
 use super::air::{Air, Surroundings};
-use super::clock::WakeClock;
+use super::clock::{Alarms, ControlSteps};
 use super::digest::Digest;
 use super::error::RunError;
 use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams};
@@ -20,7 +20,10 @@ const ROBOT: Purpose = Purpose::new("protocol.robot");
 enum Event {
     MotionTick,
     Fault,
-    Wake(ActorId),
+    /// A robot's timers and arrivals.
+    Alarm(ActorId),
+    /// The control steps of all robots that are due.
+    ControlSteps,
     Sample,
     Observe,
 }
@@ -30,9 +33,10 @@ impl EventKey for Event {
         match self {
             Self::MotionTick => 0,
             Self::Fault => 1,
-            Self::Wake(_) => 2,
-            Self::Sample => 3,
-            Self::Observe => 4,
+            Self::Alarm(_) => 2,
+            Self::ControlSteps => 3,
+            Self::Sample => 4,
+            Self::Observe => 5,
         }
     }
 }
@@ -58,7 +62,7 @@ pub struct Rhythm {
     pub has_mission: bool,
 }
 
-/// A run: the world, the air and the robots' clocks, around the queue of events.
+/// A run: the world, the air and the robots' alarms, around the queue of events.
 pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     rhythm: Rhythm,
     queue: EventQueue<Event>,
@@ -69,7 +73,8 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     changes: Vec<Change>,
     recorder: Recorder,
     digest: Digest,
-    clocks: Vec<WakeClock>,
+    control_steps: ControlSteps,
+    alarms: Vec<Alarms>,
     /// Each robot's control steps and other wakes so far: apart, so that no timer shifts the draws of a control step.
     wakes: Vec<[u32; 2]>,
     randomness: KeyedStreams,
@@ -78,12 +83,11 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     reached: Vec<ActorId>,
     positions: Vec<Vec2>,
     events: u64,
-    batches: u64,
     steps: u64,
 }
 
 impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
-    /// A run in which robot i first wakes at `first_steps[i]`.
+    /// A run in which robot i takes its first control step at `first_steps[i]`, less than a period from the start.
     #[allow(clippy::too_many_arguments)] // The parts of a run, each once.
     pub fn new(
         rhythm: Rhythm,
@@ -95,7 +99,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         streams: Streams,
         first_steps: &[SimTime],
     ) -> Self {
-        let mut queue = EventQueue::with_capacity(first_steps.len() + 4);
+        let mut queue = EventQueue::with_capacity(first_steps.len() + 5);
         queue.schedule(Event::MotionTick, SimTime::ZERO + world.tick());
         if rhythm.sample_interval > Span::ZERO {
             queue.schedule(Event::Sample, SimTime::ZERO);
@@ -103,9 +107,8 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         if rhythm.has_mission {
             queue.schedule(Event::Observe, SimTime::ZERO);
         }
-        for (robot, &first) in first_steps.iter().enumerate() {
-            queue.schedule(Event::Wake(ActorId(robot as u32)), first);
-        }
+        let control_steps = ControlSteps::new(first_steps, rhythm.control_period);
+        queue.schedule(Event::ControlSteps, control_steps.upcoming());
         if faults.next() < SimTime::NEVER {
             queue.schedule(Event::Fault, faults.next());
         }
@@ -119,7 +122,8 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             changes: Vec::new(),
             recorder,
             digest: Digest::new(),
-            clocks: first_steps.iter().map(|&first| WakeClock::new(first)).collect(),
+            control_steps,
+            alarms: first_steps.iter().map(|_| Alarms::default()).collect(),
             wakes: vec![[0; 2]; first_steps.len()],
             randomness: streams.keyed(ROBOT),
             batch: Vec::new(),
@@ -127,7 +131,6 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             reached: Vec::new(),
             positions: Vec::new(),
             events: 0,
-            batches: 0,
             steps: 0,
         }
     }
@@ -149,7 +152,8 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                     self.queue.schedule(event, now + self.world.tick());
                 }
                 Event::Fault => self.suffer(now),
-                Event::Wake(_) => self.wake_all(now).await?,
+                Event::Alarm(_) => self.ring_alarms(now).await?,
+                Event::ControlSteps => self.take_control_steps(now).await?,
                 Event::Sample => {
                     self.locate(now);
                     self.recorder.sample(now, &self.positions);
@@ -170,18 +174,36 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         Ok(self.finish(trial, seed, end))
     }
 
-    /// Wakes every robot that is due at `now`, once. One that is due twice stays in the queue for the next batch.
-    async fn wake_all(&mut self, now: SimTime) -> Result<(), RunError> {
-        self.batches += 1;
-        while let Some((event @ Event::Wake(robot), due)) = self.queue.peek() {
-            if due > now || !self.clocks[robot.index()].join(self.batches) {
-                break;
-            }
-            let job = self.prepare(now, robot);
+    /// Wakes every robot that has an alarm at `now`, once. One that has another at that instant is in the next batch.
+    async fn ring_alarms(&mut self, now: SimTime) -> Result<(), RunError> {
+        while let Some((event @ Event::Alarm(robot), due)) = self.queue.peek()
+            && due <= now
+        {
+            self.queue.cancel(&event);
+            let wake = self.alarms[robot.index()].take_due(now);
+            let job = self.prepare(now, robot, wake);
             self.batch.push(job);
-            self.queue.schedule(event, self.clocks[robot.index()].next());
         }
-        self.events += self.batch.len() as u64 - 1;
+        self.dispatch().await
+    }
+
+    /// Wakes every robot that has a control step at `now`.
+    async fn take_control_steps(&mut self, now: SimTime) -> Result<(), RunError> {
+        while let Some(robot) = self.control_steps.take_due(now) {
+            if self.alarms[robot.index()].is_asleep() {
+                continue;
+            }
+            let job = self.prepare(now, robot, Wake::ControlStep);
+            self.batch.push(job);
+        }
+        self.queue.schedule(Event::ControlSteps, self.control_steps.upcoming());
+        self.dispatch().await
+    }
+
+    /// Has the robots of the batch take their steps, and lets their answers take effect.
+    async fn dispatch(&mut self) -> Result<(), RunError> {
+        // The event that led here is counted already, even if it found nobody awake.
+        self.events += (self.batch.len() as u64).saturating_sub(1);
         self.driver.dispatch(&mut self.batch).await;
         let mut batch = std::mem::take(&mut self.batch);
         for mut job in batch.drain(..) {
@@ -196,10 +218,20 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         Ok(())
     }
 
+    /// Schedules the first alarm of `robot`, if it has one.
+    fn set_alarm(&mut self, robot: ActorId) {
+        let event = Event::Alarm(robot);
+        match self.alarms[robot.index()].next() {
+            SimTime::NEVER => {
+                self.queue.cancel(&event);
+            }
+            next => self.queue.schedule(event, next),
+        }
+    }
+
     /// Fills in what `robot` is told at `now`.
-    fn prepare(&mut self, now: SimTime, robot: ActorId) -> Box<JobFor<P>> {
+    fn prepare(&mut self, now: SimTime, robot: ActorId, wake: Wake) -> Box<JobFor<P>> {
         let index = robot.index();
-        let wake = self.clocks[index].take_due(now, self.rhythm.control_period);
         let lane = u32::from(wake != Wake::ControlStep);
         let wakes = &mut self.wakes[index][lane as usize];
         let random = self.randomness.at(robot.0, lane, *wakes);
@@ -231,13 +263,13 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         }
         self.air.deliver(now, robot, &mut input.inbox, &mut self.recorder);
         if self.rhythm.wake_on_reception {
-            self.clocks[index].set_arrival(self.air.next_arrival(robot));
+            self.alarms[index].set_arrival(self.air.next_arrival(robot));
         }
         job.output.clear();
         job
     }
 
-    /// Lets a robot's answer take effect, and schedules its next wake.
+    /// Lets a robot's answer take effect.
     fn apply(&mut self, job: &mut JobFor<P>) -> Result<(), RunError> {
         let Job {
             actor: robot,
@@ -267,12 +299,13 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             self.air
                 .broadcast(now, robot, messages, place, &mut self.recorder, &mut self.digest)?;
         }
-        if !output.timers.is_empty() {
-            let clock = &mut self.clocks[robot.index()];
+        let rang = input.wake != Wake::ControlStep;
+        if rang || self.rhythm.wake_on_reception || !output.timers.is_empty() {
+            let alarms = &mut self.alarms[robot.index()];
             for (id, due) in output.timers.drain(..) {
-                clock.set_timer(id, due, now);
+                alarms.set_timer(id, due, now);
             }
-            self.queue.schedule(Event::Wake(robot), clock.next());
+            self.set_alarm(robot);
         }
         Ok(())
     }
@@ -296,20 +329,17 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     /// From `now` on `robot` can do what its `health` allows.
     fn ail(&mut self, now: SimTime, robot: ActorId, health: Health) {
         self.air.set_hearing(now, robot, health.hears, &mut self.recorder);
-        let clock = &mut self.clocks[robot.index()];
-        let before = clock.next();
+        let alarms = &mut self.alarms[robot.index()];
         if self.rhythm.wake_on_reception {
-            clock.set_arrival(self.air.next_arrival(robot));
+            alarms.set_arrival(self.air.next_arrival(robot));
         }
         if health.acts {
-            clock.resume(now, self.rhythm.control_period);
+            alarms.resume(now);
         } else {
-            clock.sleep();
+            alarms.sleep();
             self.world.command(robot, Vec2::zeros());
         }
-        if clock.next() != before {
-            self.queue.schedule(Event::Wake(robot), clock.next());
-        }
+        self.set_alarm(robot);
     }
 
     fn plan_faults(&mut self) {
@@ -325,11 +355,11 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     fn wake_reached(&mut self) {
         self.air.take_reached(&mut self.reached);
         for robot in self.reached.drain(..) {
-            let clock = &mut self.clocks[robot.index()];
+            let alarms = &mut self.alarms[robot.index()];
             let arrival = self.air.next_arrival(robot);
-            if arrival < clock.arrival() {
-                clock.set_arrival(arrival);
-                self.queue.schedule(Event::Wake(robot), clock.next());
+            if arrival < alarms.arrival() {
+                alarms.set_arrival(arrival);
+                self.queue.schedule(Event::Alarm(robot), alarms.next());
             }
         }
     }
@@ -338,17 +368,17 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         let Self {
             positions,
             world,
-            clocks,
+            alarms,
             ..
         } = self;
         positions.clear();
-        positions.extend((0..clocks.len() as u32).map(|robot| world.position(ActorId(robot), now)));
+        positions.extend((0..alarms.len() as u32).map(|robot| world.position(ActorId(robot), now)));
     }
 
     fn finish(mut self, trial: u32, seed: u64, end: SimTime) -> TrialRecord {
         self.air.settle(end, &mut self.recorder);
         let world = &self.world;
-        let poses = (0..self.clocks.len() as u32)
+        let poses = (0..self.alarms.len() as u32)
             .map(|robot| world.pose(ActorId(robot), end))
             .collect();
         self.recorder.finish(RunEnd {

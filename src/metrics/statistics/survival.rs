@@ -13,14 +13,19 @@ pub struct Observation {
 
 /// The Kaplan–Meier median: the first time by which half of the trials are estimated to be done. Its interval holds the
 /// times at which Greenwood's 95 % band of the survival curve, under the log(−log) transform, contains one half
-/// (Brookmeyer and Crowley). What is not reached before the trials end is absent.
+/// (Brookmeyer and Crowley). What is not reached before the trials end is absent, and so is the interval of a single trial.
 #[must_use]
 pub fn median_survival(observations: &[Observation]) -> Estimate {
     let curve = survival_curve(observations);
     let first = |level: fn(&Step) -> f64| curve.iter().find(|step| level(step) <= 0.5).map(|step| step.time);
+    let ci95 = if observations.len() > 1 {
+        [first(|step| step.band[0]), first(|step| step.band[1])]
+    } else {
+        [None; 2]
+    };
     Estimate {
         value: first(|step| step.survival),
-        ci95: [first(|step| step.band[0]), first(|step| step.band[1])],
+        ci95,
         n: observations.len() as u64,
     }
 }
@@ -119,7 +124,11 @@ mod tests {
         assert_median(&most_complete, Some(1500), Some(1380), None);
         assert_median(&observed(&[10, 20, 30, 40], &[]), Some(20), Some(10), Some(40));
         assert_median(&observed(&[10], &[20, 30, 40]), None, Some(10), None);
-        assert_median(&observed(&[5], &[]), Some(5), Some(5), Some(5));
+    }
+
+    #[test]
+    fn a_single_trial_has_a_median_and_no_interval() {
+        assert_median(&observed(&[5], &[]), Some(5), None, None);
     }
 
     #[test]

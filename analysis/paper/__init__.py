@@ -1,0 +1,1 @@
+"""The paper's evaluation: what is run, what is read from the results, and how it compares with the paper."""

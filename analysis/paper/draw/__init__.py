@@ -1,0 +1,1 @@
+"""The figures, each from `figures.json` and the paper's numbers alone."""
