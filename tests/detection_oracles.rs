@@ -112,16 +112,22 @@ fn assert_mistakes(channel: &Channel, period: f64, timeout: f64) {
     let recurrence = period / (channel.arriving * q);
     let duration = period * long - timeout;
     let variance = period.powi(2) * long_variance;
-    let recurrence_variance =
-        variance + period.powi(2) * (1.0 - q) / q * (short_variance + short.powi(2) / q);
+    let recurrence_variance = variance + period.powi(2) * (1.0 - q) / q * (short_variance + short.powi(2) / q);
 
     let record = run(&channel.loss, period, timeout, SECONDS, "");
     let pairs = record.detection.pairs as f64;
-    assert_eq!(record.detection.pairs, u64::from(ROBOTS * (ROBOTS - 1)), "{what}: all hear each other");
+    assert_eq!(
+        record.detection.pairs,
+        u64::from(ROBOTS * (ROBOTS - 1)),
+        "{what}: all hear each other"
+    );
     let watched = record.detection.monitored_s / pairs;
     let figures = summary(record).detection;
     let mistakes = figures.mistakes.value as f64;
-    assert_eq!(figures.suspicions.value, figures.mistakes.value, "{what}: nobody failed or left");
+    assert_eq!(
+        figures.suspicions.value, figures.mistakes.value,
+        "{what}: nobody failed or left"
+    );
     let heartbeats = (watched - timeout) / period - 0.5;
     let transient = (1.0 - channel.arriving) * channel.memory / (1.0 - channel.memory);
     let expected = pairs * q * (1.0 + channel.arriving * heartbeats + transient);
@@ -131,13 +137,28 @@ fn assert_mistakes(channel: &Channel, period: f64, timeout: f64) {
 
     let error = (recurrence_variance / recurrence.powi(2) / mistakes).sqrt();
     let measured = figures.mistake_recurrence_s.estimate.value.unwrap();
-    assert_near(&format!("{what}: E[T_MR]"), measured, recurrence / finite, recurrence * error);
+    assert_near(
+        &format!("{what}: E[T_MR]"),
+        measured,
+        recurrence / finite,
+        recurrence * error,
+    );
     let measured = figures.mistake_duration_s.estimate.value.unwrap();
-    assert_near(&format!("{what}: E[T_M]"), measured, duration - variance / watched, (variance / mistakes).sqrt());
+    assert_near(
+        &format!("{what}: E[T_M]"),
+        measured,
+        duration - variance / watched,
+        (variance / mistakes).sqrt(),
+    );
     let share = duration / recurrence;
     let spread = variance * (1.0 - 2.0 * share) + share.powi(2) * recurrence_variance;
     let measured = figures.query_accuracy.estimate.value.unwrap();
-    assert_near(&format!("{what}: P_A"), measured, 1.0 - share * finite, (spread / mistakes).sqrt() / recurrence);
+    assert_near(
+        &format!("{what}: P_A"),
+        measured,
+        1.0 - share * finite,
+        (spread / mistakes).sqrt() / recurrence,
+    );
 }
 
 #[test]
@@ -183,20 +204,32 @@ fn failures_are_detected_after_the_time_that_the_closed_form_says() {
         for seed in 0..RUNS {
             let more = format!("seed: {seed}, faults: [Mute(robots: {mute:?}, at: 20.3)],");
             let record = run(&bernoulli(p).loss, period, timeout, 30.0, &more);
-            assert_eq!(record.detection.failures.len(), (FAILING * (ROBOTS - 1)) as usize, "{what}");
+            assert_eq!(
+                record.detection.failures.len(),
+                (FAILING * (ROBOTS - 1)) as usize,
+                "{what}"
+            );
             times.extend(record.detection.failures.iter().map(|failure| match failure.outcome {
                 FailureOutcome::Detected(after) => after.as_secs(),
                 other => panic!("{what}: {other:?}"),
             }));
         }
-        assert!(times.iter().all(|&after| after <= timeout + LATENCY), "{what}: T_D is at most TO + d");
+        assert!(
+            times.iter().all(|&after| after <= timeout + LATENCY),
+            "{what}: T_D is at most TO + d"
+        );
         // Over u uniform and k geometric, no time below zero.
         let expected: f64 = (0..200)
             .map(|k| {
                 let chance = (1.0 - p) * f64::powi(p, k);
                 let at_most = timeout + LATENCY - period * f64::from(k);
                 let at_least = (at_most - period).max(0.0);
-                chance * if at_most > 0.0 { (at_most.powi(2) - at_least.powi(2)) / (2.0 * period) } else { 0.0 }
+                chance
+                    * if at_most > 0.0 {
+                        (at_most.powi(2) - at_least.powi(2)) / (2.0 * period)
+                    } else {
+                        0.0
+                    }
             })
             .sum();
         let (failures, observed) = (f64::from(FAILING * RUNS), times.len() as f64);
@@ -216,7 +249,11 @@ fn a_robot_that_is_down_is_rightly_suspected_and_a_deaf_observer_is_to_blame_its
     };
     assert_eq!(of(Verdict::Right).count(), ROBOTS as usize - 1);
     assert!(of(Verdict::Right).all(|suspicion| suspicion.subject.0 == 0 && suspicion.until.is_none()));
-    assert_eq!(of(Verdict::Observer).count(), ROBOTS as usize - 2, "it already suspects robot 0");
+    assert_eq!(
+        of(Verdict::Observer).count(),
+        ROBOTS as usize - 2,
+        "it already suspects robot 0"
+    );
     assert!(of(Verdict::Observer).all(|suspicion| suspicion.observer.0 == 1 && suspicion.until.is_some()));
     assert_eq!(of(Verdict::Mistake).count(), 0);
     assert_eq!(record.detection.mistaken_s.to_bits(), 0.0_f64.to_bits());

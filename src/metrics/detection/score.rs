@@ -250,3 +250,176 @@ impl Pair {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OBSERVER: ActorId = ActorId(0);
+    const SUBJECT: ActorId = ActorId(1);
+    const MUTE: Health = Health {
+        sends: false,
+        ..Health::WELL
+    };
+    const DEAF: Health = Health {
+        hears: false,
+        ..Health::WELL
+    };
+
+    fn at(seconds: f64) -> SimTime {
+        SimTime::from_secs(seconds)
+    }
+
+    /// One observer that has watched one subject since 1 s, and statuses number 0, 1, … of it at 0, 1, … s.
+    struct Bench(Scorer);
+
+    impl Bench {
+        fn new() -> Self {
+            let mut scorer = Scorer::new(2, Span::from_secs(1000.0));
+            (0..30).for_each(|second| scorer.sent(at(f64::from(second)), SUBJECT, second));
+            let mut bench = Self(scorer);
+            bench.believe(1.0, &Note::Watches(SUBJECT));
+            bench
+        }
+
+        fn believe(&mut self, seconds: f64, note: &Note) {
+            self.0.belief(at(seconds), OBSERVER, note, &[] as &[Reception<()>]);
+        }
+
+        /// A suspicion, the last status heard being number `heard` at its own second.
+        fn suspect(&mut self, seconds: f64, heard: u32) {
+            self.believe(
+                seconds,
+                &Note::Suspects {
+                    robot: SUBJECT,
+                    heard: at(f64::from(heard)),
+                    sequence: heard,
+                },
+            );
+        }
+
+        fn trust(&mut self, seconds: f64) {
+            self.believe(seconds, &Note::Trusts(SUBJECT));
+        }
+
+        /// The channel loses statuses `lost`.
+        fn lose(&mut self, lost: std::ops::Range<u32>) {
+            lost.for_each(|status| self.0.lost(OBSERVER, SUBJECT, status, LossCause::Channel));
+        }
+
+        fn outcomes(self) -> (DetectionRecord, Vec<FailureOutcome>) {
+            let record = self.0.finish(at(30.0));
+            let outcomes = record.failures.iter().map(|failure| failure.outcome).collect();
+            (record, outcomes)
+        }
+    }
+
+    fn assert_time(record: &DetectionRecord, monitored: f64, mistaken: f64) {
+        assert!(
+            (record.monitored_s - monitored).abs() < 1e-9,
+            "monitored {} s",
+            record.monitored_s
+        );
+        assert!(
+            (record.mistaken_s - mistaken).abs() < 1e-9,
+            "mistaken {} s",
+            record.mistaken_s
+        );
+    }
+
+    #[test]
+    fn a_mistake_counts_as_monitored_time_and_lasts_until_trust() {
+        let mut bench = Bench::new();
+        bench.lose(4..6);
+        bench.suspect(5.5, 3);
+        bench.trust(6.0);
+        let (record, _) = bench.outcomes();
+        assert_time(&record, 29.0, 0.5);
+        let suspicion = &record.suspicions[0];
+        assert_eq!(
+            (suspicion.verdict(), suspicion.cause),
+            (Verdict::Mistake, Cause::Lost(LossCause::Channel))
+        );
+        assert_eq!(
+            (suspicion.duration, suspicion.until),
+            (Some(Span::from_secs(0.5)), Some(at(6.0)))
+        );
+    }
+
+    #[test]
+    fn a_robot_out_of_range_is_not_mistaken_for_a_failed_one_and_not_monitored_until_it_is_back() {
+        let mut bench = Bench::new();
+        bench.suspect(10.0, 6);
+        bench.trust(20.0);
+        let (record, _) = bench.outcomes();
+        assert_eq!(record.suspicions[0].verdict(), Verdict::OutOfRange);
+        assert_eq!(
+            (record.suspicions[0].missed.out_of_range, record.suspicions[0].duration),
+            (3, None)
+        );
+        assert_time(&record, 9.0 + 10.0, 0.0);
+    }
+
+    #[test]
+    fn a_failure_is_detected_at_the_suspicion_that_stays() {
+        let mut bench = Bench::new();
+        bench.0.fault(at(10.0), SUBJECT, MUTE);
+        bench.suspect(12.0, 9);
+        bench.trust(12.5);
+        bench.suspect(15.0, 9);
+        bench.0.fault(at(20.0), SUBJECT, Health::WELL);
+        bench.trust(21.0);
+        let (record, outcomes) = bench.outcomes();
+        assert_eq!(outcomes, [FailureOutcome::Detected(Span::from_secs(5.0))]);
+        assert!(
+            record
+                .suspicions
+                .iter()
+                .all(|suspicion| suspicion.verdict() == Verdict::Right)
+        );
+        assert_time(&record, 9.0 + 9.0, 0.0);
+    }
+
+    #[test]
+    fn a_mistake_that_comes_true_is_a_detection_without_delay_and_has_no_duration() {
+        let mut bench = Bench::new();
+        bench.lose(7..10);
+        bench.suspect(9.5, 6);
+        bench.0.fault(at(10.0), SUBJECT, MUTE);
+        let (record, outcomes) = bench.outcomes();
+        assert_eq!(outcomes, [FailureOutcome::Detected(Span::ZERO)]);
+        assert_eq!(record.suspicions[0].duration, None);
+        assert_time(&record, 9.0, 0.5);
+    }
+
+    #[test]
+    fn failures_end_undetected_when_the_robot_the_observer_or_the_run_is_quicker() {
+        let mut recovered = Bench::new();
+        recovered.0.fault(at(10.0), SUBJECT, MUTE);
+        recovered.0.fault(at(11.0), SUBJECT, Health::WELL);
+        assert_eq!(recovered.outcomes().1, [FailureOutcome::Recovered]);
+
+        let mut deaf = Bench::new();
+        deaf.0.fault(at(10.0), SUBJECT, MUTE);
+        deaf.0.fault(at(11.0), OBSERVER, DEAF);
+        deaf.suspect(13.0, 9);
+        assert_eq!(deaf.outcomes().1, [FailureOutcome::ObserverFailed]);
+
+        let mut late = Bench::new();
+        late.0.fault(at(29.0), SUBJECT, MUTE);
+        assert_eq!(late.outcomes().1, [FailureOutcome::Undetected]);
+    }
+
+    #[test]
+    fn a_suspicion_after_a_failure_that_filled_most_of_the_silence_is_due_to_it() {
+        let mut bench = Bench::new();
+        bench.0.fault(at(4.0), SUBJECT, MUTE);
+        bench.0.fault(at(7.5), SUBJECT, Health::WELL);
+        bench.suspect(8.0, 3);
+        let suspicion = &bench.outcomes().0.suspicions[0];
+        assert_eq!(
+            (suspicion.verdict(), suspicion.cause),
+            (Verdict::Mistake, Cause::Failure)
+        );
+    }
+}
