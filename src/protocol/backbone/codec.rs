@@ -8,7 +8,7 @@
 //! | replace | kind, to, child, sequence, chain, number of robots beyond |
 //! | accept, refuse | kind, to, sequence |
 //! | release | kind, to |
-//! | order | kind, epoch, target + 1 or 0 for all |
+//! | order | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
 //! | strand | kind, chain, next, number of robots, robots |
 //!
 //! The first byte tells messages apart: 0 to 3 is a status, which begins with its role. A robot's id is one byte if all
@@ -20,7 +20,7 @@ use tokio_util::codec::{Decoder, Encoder};
 use crate::engine::ActorId;
 use crate::protocol::CodecError;
 
-use super::message::{Message, Order, Request, Role, Status, Strand};
+use super::message::{Message, Order, Request, Role, Status, Strand, TargetSet};
 
 const JOIN: u8 = 0x10;
 const ACCEPT: u8 = 0x11;
@@ -97,7 +97,11 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
             bytes.put_u8(sequence);
         }
         Request::Release { to } => put_addressed(RELEASE, to, bytes),
-        Request::Order(order) => bytes.put_slice(&[ORDER, order.epoch, order.only.map_or(0, |target| target + 1)]),
+        Request::Order(order) => {
+            let dismantled = order.dismantled.bytes();
+            bytes.put_slice(&[ORDER, order.epoch, dismantled.len() as u8]);
+            bytes.put_slice(dismantled);
+        }
     }
 }
 
@@ -179,7 +183,7 @@ impl Decoder for BackboneCodec {
             RELEASE => Message::Request(Request::Release { to: reader.id(wide)? }),
             ORDER => Message::Request(Request::Order(Order {
                 epoch: reader.byte()?,
-                only: reader.byte()?.checked_sub(1),
+                dismantled: reader.targets()?,
             })),
             PARENT_STRAND => Message::ParentStrand(reader.strand(wide)?),
             CHILD_STRAND => Message::ChildStrand(reader.strand(wide)?),
@@ -233,6 +237,20 @@ impl Reader<'_> {
             need,
             chain,
         }))
+    }
+
+    fn targets(&mut self) -> Result<TargetSet, CodecError> {
+        let length = self.byte()?;
+        let too_many = CodecError::Unknown {
+            field: "number of target bytes",
+            value: length,
+        };
+        let mut bytes = [0; TargetSet::BYTES];
+        let bytes = bytes.get_mut(..length.into()).ok_or(too_many)?;
+        for byte in &mut *bytes {
+            *byte = self.byte()?;
+        }
+        Ok(TargetSet::from_bytes(bytes).unwrap_or_default())
     }
 
     fn strand(&mut self, wide: bool) -> Result<Strand, CodecError> {
@@ -296,7 +314,11 @@ mod tests {
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
             id().prop_map(|to| Request::Release { to }),
-            (any::<u8>(), prop::option::of(0_u8..255)).prop_map(|(epoch, only)| Request::Order(Order { epoch, only })),
+            (any::<u8>(), prop::collection::vec(0_u8..255, 0..4)).prop_map(|(epoch, targets)| {
+                let mut dismantled = TargetSet::default();
+                targets.into_iter().for_each(|target| dismantled.insert(target));
+                Request::Order(Order { epoch, dismantled })
+            }),
         ];
         prop_oneof![
             status,

@@ -3,16 +3,20 @@
 
 mod codec;
 mod config;
+mod duty;
 mod forces;
 mod free;
 mod heal;
 mod isolated;
+mod lines;
 mod message;
 mod mission;
 mod neighbours;
 mod networker;
 mod recruit;
+mod requests;
 mod root;
+mod shortage;
 mod sidestep;
 mod strand;
 mod view;
@@ -27,12 +31,12 @@ pub use codec::BackboneCodec;
 pub use config::{
     BackboneConfig, ControlLawConfig, HealingConfig, RecruitingConfig, ShortageConfig, TargetConfig, TargetsConfig,
 };
-pub use message::{Message, Order, Request, Role, Status, Strand};
+pub use message::{Message, Order, Request, Role, Status, Strand, TargetSet};
 
+use duty::Duty;
 use mission::{Mission, Parameters};
 use neighbours::Neighbours;
-use networker::Networker;
-use recruit::{Recruiter, Slot};
+use recruit::Recruiter;
 use root::Root;
 use sidestep::Sidestep;
 use view::{Knowledge, View};
@@ -59,15 +63,6 @@ pub struct Backbone {
     /// What arrived since the last control step and was read when the detector's timer woke the robot.
     unread: Vec<Reception<Message>>,
     told: Told,
-}
-
-/// What a robot does, with the state that this needs.
-#[derive(Debug)]
-enum Duty {
-    Free,
-    Root(Root),
-    Networker(Networker),
-    Worker(Worker),
 }
 
 /// What the metrics were last told.
@@ -173,111 +168,6 @@ impl Backbone {
         }
     }
 
-    fn hear_request(&mut self, sender: ActorId, request: Request, out: &mut Vec<Message>) {
-        match request {
-            Request::Join { to, sequence, chain } if to == self.known.id => {
-                out.push(Message::Request(self.answer(sender, sequence, chain)));
-            }
-            Request::Adopt { to, sequence, chain } if to == self.known.id => {
-                let answer = match &mut self.duty {
-                    Duty::Networker(networker) => networker.hear_adopt(sender, sequence, chain, self.known.step),
-                    _ => Request::Refuse { to: sender, sequence },
-                };
-                out.push(Message::Request(answer));
-            }
-            Request::Work { to, sequence, target } if to == self.known.id => {
-                out.push(Message::Request(self.answer_work(sender, sequence, target)));
-            }
-            Request::Replace {
-                to,
-                sequence,
-                chain,
-                child,
-                beyond,
-            } if to == self.known.id => {
-                let beyond = vec![child; usize::from(beyond)];
-                out.push(Message::Request(self.answer_replace(sender, sequence, chain, beyond)));
-            }
-            Request::Accept { to, sequence } if to == self.known.id => self.hear_accept(sender, sequence, out),
-            Request::Refuse { to, sequence } if to == self.known.id => {
-                if let Duty::Root(root) = &mut self.duty {
-                    root.hear_answer(sender, sequence, false, &self.known.mission, self.known.step);
-                }
-                for slot in self.duty.slots_mut() {
-                    slot.hear_refuse(sender, sequence);
-                }
-            }
-            Request::Release { to } if to == self.known.id => {
-                if matches!(&self.duty, Duty::Networker(networker) if networker.is_released_by(sender)) {
-                    self.become_free();
-                }
-            }
-            Request::Order(order) if order.is_newer_than(self.known.order) => self.known.order = order,
-            _ => {}
-        }
-    }
-
-    fn hear_accept(&mut self, sender: ActorId, sequence: u8, out: &mut Vec<Message>) {
-        let step = self.known.step;
-        if let Duty::Root(root) = &mut self.duty {
-            root.hear_answer(sender, sequence, true, &self.known.mission, step);
-            return;
-        }
-        let slots = self.duty.slots_mut();
-        if !slots.iter_mut().any(|slot| slot.hear_accept(sender, sequence, step)) {
-            out.push(Message::Request(Request::Release { to: sender }));
-        }
-    }
-
-    /// The answer to the root's request to work: a free robot does.
-    fn answer_work(&mut self, sender: ActorId, sequence: u8, target: u8) -> Request {
-        let mission = &self.known.mission;
-        match &self.duty {
-            Duty::Worker(worker) if worker.target == target => Request::Accept { to: sender, sequence },
-            Duty::Free if usize::from(target) < mission.targets.len() => {
-                self.duty = Duty::Worker(Worker::new(target, mission));
-                self.previous = Role::Free;
-                Request::Accept { to: sender, sequence }
-            }
-            _ => Request::Refuse { to: sender, sequence },
-        }
-    }
-
-    /// The answer to the root's request to replace a lost robot of `chain`, `beyond` which so many are left: a free robot
-    /// does. Their names it learns from their strands.
-    fn answer_replace(&mut self, sender: ActorId, sequence: u8, chain: u8, beyond: Vec<ActorId>) -> Request {
-        let Knowledge { mission, step, .. } = &self.known;
-        match (&mut self.duty, beyond.last().copied()) {
-            (Duty::Networker(networker), _) => networker.hear_replace(sender, sequence, chain),
-            (Duty::Free, Some(child)) if mission.has_chain(chain) => {
-                let slot = Slot::new(chain, mission.root);
-                self.duty = Duty::Networker(Networker::waiting(slot, child, sequence, beyond, *step));
-                self.previous = Role::Free;
-                Request::Accept { to: sender, sequence }
-            }
-            _ => Request::Refuse { to: sender, sequence },
-        }
-    }
-
-    /// The answer to a request to join: a free robot accepts the first one.
-    fn answer(&mut self, sender: ActorId, sequence: u8, chain: u8) -> Request {
-        match &mut self.duty {
-            Duty::Networker(networker) => networker.hear_join(sender, sequence, chain, self.known.step),
-            Duty::Free if self.known.mission.has_chain(chain) => {
-                let joiner = Networker::new(chain, sender, sequence, self.known.mission.root, self.known.step);
-                self.duty = Duty::Networker(joiner);
-                self.previous = Role::Free;
-                Request::Accept { to: sender, sequence }
-            }
-            Duty::Free | Duty::Root(_) | Duty::Worker(_) => Request::Refuse { to: sender, sequence },
-        }
-    }
-
-    fn become_free(&mut self) {
-        self.previous = self.duty.role();
-        self.duty = Duty::Free;
-    }
-
     fn control(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
         let Knowledge {
             neighbours, detector, ..
@@ -296,44 +186,6 @@ impl Backbone {
         };
         output.velocity = Some(velocity);
         self.gossip(&input.proximity, &mut output.broadcasts);
-    }
-
-    /// Gives up a duty that is over, and takes over from a worker that is lost.
-    fn change_duty(&mut self, proximity: &[Vec2]) {
-        let view = self.known.view(proximity);
-        let is_isolated = view.is_isolated();
-        match &mut self.duty {
-            Duty::Networker(networker) => {
-                networker.watch_child(&view);
-                if networker.is_heir(&view) && !is_isolated {
-                    self.replace_duty(|duty, known| match duty {
-                        Duty::Networker(networker) => Duty::Worker(Worker::heir(networker.slot, &known.mission)),
-                        other => other,
-                    });
-                } else if networker.is_done(&view) || is_isolated {
-                    self.become_free();
-                }
-            }
-            Duty::Worker(worker) => {
-                if let Some(better) = worker.better(&view) {
-                    self.replace_duty(|duty, known| match duty {
-                        Duty::Worker(worker) => worker.into_slot(known.mission.root).map_or(Duty::Free, |slot| {
-                            Duty::Networker(Networker::waiting(slot, better, 0, Vec::new(), known.step))
-                        }),
-                        other => other,
-                    });
-                } else if is_isolated {
-                    self.become_free();
-                }
-            }
-            Duty::Free | Duty::Root(_) => {}
-        }
-    }
-
-    fn replace_duty(&mut self, change: impl FnOnce(Duty, &Knowledge) -> Duty) {
-        self.previous = self.duty.role();
-        let old = std::mem::replace(&mut self.duty, Duty::Free);
-        self.duty = change(old, &self.known);
     }
 
     /// Runs the routine of the robot's role; the velocity that it wants.
@@ -416,41 +268,6 @@ impl Backbone {
             self.told.parents.clear();
             self.told.parents.extend(slots.iter().map(|slot| slot.parent));
             notes.push(Note::Parents(self.told.parents.clone()));
-        }
-    }
-}
-
-impl Duty {
-    const fn role(&self) -> Role {
-        match self {
-            Self::Free => Role::Free,
-            Self::Root(_) => Role::Root,
-            Self::Networker(_) => Role::Networker,
-            Self::Worker(_) => Role::Worker,
-        }
-    }
-
-    fn slots(&self) -> &[Slot] {
-        match self {
-            Self::Free | Self::Root(_) => &[],
-            Self::Networker(networker) => std::slice::from_ref(&networker.slot),
-            Self::Worker(worker) => &worker.slots,
-        }
-    }
-
-    fn slots_mut(&mut self) -> &mut [Slot] {
-        match self {
-            Self::Free | Self::Root(_) => &mut [],
-            Self::Networker(networker) => std::slice::from_mut(&mut networker.slot),
-            Self::Worker(worker) => &mut worker.slots,
-        }
-    }
-
-    fn target(&self, mission: &Mission) -> Option<u16> {
-        match self {
-            Self::Free | Self::Root(_) => None,
-            Self::Networker(networker) => Some(mission.chain(networker.slot.chain).target.into()),
-            Self::Worker(worker) => Some(worker.target.into()),
         }
     }
 }

@@ -88,7 +88,8 @@ impl Networker {
 
     /// Answers a request to replace a lost robot: the one that it accepted it accepts again.
     pub fn hear_replace(&mut self, sender: ActorId, sequence: u8, chain: u8) -> Request {
-        if self.orphan.is_some() && self.slot.parent == sender && self.sequence == sequence && self.slot.chain == chain {
+        if self.orphan.is_some() && self.slot.parent == sender && self.sequence == sequence && self.slot.chain == chain
+        {
             Request::Accept { to: sender, sequence }
         } else {
             Request::Refuse { to: sender, sequence }
