@@ -182,6 +182,7 @@ impl Backbone {
             self.sidestep
                 .adjust(desired, self.known.position, self.known.step, stall, &mut input.random)
         } else {
+            self.sidestep.rest(self.known.position, self.known.step);
             desired
         };
         output.velocity = Some(velocity);
