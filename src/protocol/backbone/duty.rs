@@ -65,16 +65,23 @@ impl Backbone {
     /// Gives up a duty that is over, and takes over from a worker that is lost.
     pub(super) fn change_duty(&mut self, proximity: &[Vec2]) {
         let view = self.known.view(proximity);
-        let is_isolated = view.is_isolated();
+        if view.is_isolated() {
+            // So near to the root a robot with a radio hears it.
+            let is_deaf = view.way_to_root().norm() <= view.parameters().critical;
+            if is_deaf && matches!(self.duty, Duty::Networker(_) | Duty::Worker(_)) {
+                self.become_free();
+            }
+            return;
+        }
         match &mut self.duty {
             Duty::Networker(networker) => {
                 networker.watch_child(&view);
-                if networker.is_heir(&view) && !is_isolated {
+                if networker.is_heir(&view) {
                     self.replace_duty(|duty, known| match duty {
                         Duty::Networker(networker) => Duty::Worker(Worker::heir(networker.slot, &known.mission)),
                         other => other,
                     });
-                } else if networker.is_done(&view) || is_isolated {
+                } else if networker.is_done(&view) {
                     self.become_free();
                 }
             }
@@ -86,8 +93,6 @@ impl Backbone {
                         }),
                         other => other,
                     });
-                } else if is_isolated {
-                    self.become_free();
                 }
             }
             Duty::Free | Duty::Root(_) => {}

@@ -1,6 +1,7 @@
 //! What a robot does that hears nobody (ours). Either all robots around it are gone or its own radio is dead, and it
 //! cannot tell which. So it goes where its radio would tell it: to a place within reach of the root, but beside all
-//! chains, where it is in nobody's way if it stays deaf.
+//! chains, where it is in nobody's way if it stays deaf. On the way it keeps its duty, for it may meet those who look
+//! for it; near the root it gives it up.
 
 use std::f64::consts::TAU;
 

@@ -193,7 +193,7 @@ impl Backbone {
     fn act(&mut self, proximity: &[Vec2], out: &mut Vec<Message>) -> Vec2 {
         let view = self.known.view(proximity);
         match &mut self.duty {
-            Duty::Free if view.is_isolated() => isolated::velocity(&view),
+            Duty::Free | Duty::Networker(_) | Duty::Worker(_) if view.is_isolated() => isolated::velocity(&view),
             Duty::Free => free::velocity(&view),
             Duty::Root(root) => {
                 self.known.order = root.control(&view, &mut self.recruiter, out);

@@ -178,15 +178,15 @@ fn a_parent_whose_way_to_the_root_leads_through_its_child_is_given_up() {
 }
 
 #[test]
-fn a_robot_that_hears_nobody_becomes_free_and_goes_beside_the_chains() {
+fn a_robot_that_hears_nobody_comes_in_beside_the_chains_and_is_free_when_it_must_hear_the_root() {
     let mut worker = worker_with_parent();
     let output = worker.run(SILENT_S, &[]);
-    assert_eq!(worker.role(), Role::Free);
+    assert_eq!(worker.role(), Role::Worker, "it may meet somebody");
     let velocity = output.velocity.expect("a command");
-    assert!(
-        velocity.x < 0.0,
-        "towards the root, round to the other side: {velocity}"
-    );
+    assert!(velocity.x < 0.0, "towards the root: {velocity}");
+    worker.x = 1.6;
+    worker.step(&[]);
+    assert_eq!(worker.role(), Role::Free);
 }
 
 #[test]
