@@ -92,6 +92,20 @@ def kaplan_meier(times):
     return estimate(*(found if len(times) > 1 else [found[0], None, None]), n=len(times))
 
 
+def ratio(parts):
+    """The ratio of two sums over trials, with the interval of the ratio estimator."""
+    n = len(parts)
+    watched = total(b for _, b in parts)
+    if watched <= 0:
+        return estimate(None, n=n)
+    value = total(a for a, _ in parts) / watched
+    if n < 2:
+        return estimate(value, n=n)
+    squares = total((a - value * b) ** 2 for a, b in parts)
+    half = student.ppf(0.975, n - 1) * math.sqrt(squares / (n - 1) / n) / (watched / n)
+    return estimate(value, max(value - half, 0.0), max(value + half, 0.0), n)
+
+
 def gini(values):
     ordered, n = sorted(values), float(len(values))
     whole = total(ordered)
@@ -111,6 +125,7 @@ class Folder:
         self.connectivity = self.table("connectivity")
         self.faults = self.table("faults")
         self.healing = self.table("healing")
+        self.detection = self.table("detection")
         self.topics = self.frames["topic"].unique(maintain_order=True).to_list()
         prefix = "robots_"
         self.roles = [c.removeprefix(prefix) for c in self.connectivity.columns if c.startswith(prefix)]
@@ -232,6 +247,46 @@ class Folder:
         whole = {**self.healed(harmful), "harmless": len(harmless), "by_role": by_role, "by_overlap": by_overlap}
         return {"healing": whole}
 
+    def failure_detection(self):
+        suspicions = self.detection.filter(event="suspicion")
+        failures = self.detection.filter(event="failure")
+        mistakes = suspicions.filter(verdict="mistake")
+        causes = ["failure", *self.causes, "out_of_range", "latency", "not_sent"]
+        verdicts = ["right", "mistake", "out_of_range", "observer"]
+
+        def of_trials(rows, figure):
+            return [figure(rows.filter(trial=trial)) for trial in self.trials["trial"]]
+
+        def sum_and_count(rows, column):
+            values = rows[column].drop_nulls().to_list()
+            return total(values), float(len(values))
+
+        monitored, mistaken = self.trials["monitored_s"].to_list(), self.trials["mistaken_s"].to_list()
+        made = of_trials(mistakes, lambda rows: float(len(rows)))
+        wrong = ratio(list(zip(mistaken, monitored)))
+        low, high = (None if end is None else max(1.0 - end, 0.0) for end in reversed(wrong["ci95"]))
+        right = estimate(None if wrong["value"] is None else 1.0 - wrong["value"], low, high, wrong["n"])
+        outcomes = ("detected", "recovered", "observer_failed", "undetected")
+        assert set(suspicions["cause"]) <= set(causes) and set(failures["verdict"]) <= set(outcomes)
+        return {
+            "suspicions": {
+                "value": len(suspicions),
+                "by_cause": {cause: len(suspicions.filter(cause=cause)) for cause in causes},
+                "by_verdict": {verdict: len(suspicions.filter(verdict=verdict)) for verdict in verdicts},
+            },
+            "mistakes": {"value": len(mistakes)},
+            "failures": {
+                "observed": len(failures),
+                **{outcome: len(failures.filter(verdict=outcome)) for outcome in outcomes},
+            },
+            "detection_time_s": ratio(of_trials(failures, lambda rows: sum_and_count(rows, "detection_time_s"))),
+            "mistake_recurrence_s": ratio(list(zip(monitored, made))),
+            "mistake_duration_s": ratio(of_trials(suspicions, lambda rows: sum_and_count(rows, "mistake_duration_s"))),
+            "mistake_rate_hz": ratio(list(zip(made, monitored))),
+            "query_accuracy": right,
+            "monitored_s": {"value": total(monitored)},
+        }
+
     def summary(self):
         times = self.completion()
         completed = sum(done for _, done in times)
@@ -261,6 +316,7 @@ class Folder:
             "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]]),
             **self.failures(),
             **self.mending(),
+            "detection": self.failure_detection(),
             "steps": {"value": self.trials["steps"].sum()},
             "simulated_s": {"value": total(self.trials["simulated_s"])},
         }

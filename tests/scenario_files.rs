@@ -317,6 +317,11 @@ fn the_mistake_of_a_mission_that_cannot_complete() {
 }
 
 #[test]
+fn the_mistake_of_statuses_rarer_than_the_timeout_bears() {
+    insta::assert_snapshot!(refused(&["detector=Timeout(0.5)", "gossip.status.interval=0.45"]));
+}
+
+#[test]
 fn the_mistake_of_an_override_with_an_unknown_field() {
     insta::assert_snapshot!(refused(&["radio.los=Bernoulli(0.3)"]));
 }

@@ -35,7 +35,7 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
     Counts {
         simulated_s: workload.seconds,
         deliveries: record.ledger.iter().map(|topic| topic.delivered).sum(),
-        suspicions: record.suspicions,
+        suspicions: record.detection.suspicions.len() as u64,
     }
 }
 
@@ -68,6 +68,7 @@ fn setup(workload: &Workload) -> Setup {
             sample_interval: NonNegative::new(0.0),
             ..MetricsConfig::default()
         },
+        detector: DetectorConfig::Timeout(Positive::new(TIMEOUT_S)),
         ..Setup::default()
     }
 }

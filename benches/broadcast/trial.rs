@@ -18,6 +18,6 @@ pub fn run(driver: DriverKind) -> Counts {
     Counts {
         simulated_s: record.simulated.as_secs(),
         deliveries: record.ledger.iter().map(|topic| topic.delivered).sum(),
-        suspicions: record.suspicions,
+        suspicions: record.detection.suspicions.len() as u64,
     }
 }

@@ -1,6 +1,7 @@
 //! The command line: the only place that prints and the only exit code.
 
 pub mod check;
+pub mod explain;
 mod failure;
 mod interrupt;
 pub mod log;
@@ -14,6 +15,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use explain::ExplainArguments;
 pub use failure::Failure;
 use scenario::ScenarioArguments;
 
@@ -64,6 +66,9 @@ pub enum Command {
         #[arg(long)]
         resolved: bool,
     },
+    /// Tell in words and times why a robot was suspected in a finished trial
+    #[command(long_about = explain::LONG_ABOUT)]
+    Explain(ExplainArguments),
     /// Print the JSON Schema of scenario files, for editors
     Schema,
 }
@@ -84,6 +89,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
             let well = check::check(&files, &overrides, resolved, &mut out)?;
             if well { Ok(()) } else { Err(Failure::Shown) }
         }
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Schema => Ok(schema::schema(&mut out)?),
     }
 }

@@ -2,6 +2,7 @@
 
 mod config;
 mod connectivity;
+pub mod detection;
 mod faults;
 mod healing;
 mod latency;

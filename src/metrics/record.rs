@@ -9,6 +9,7 @@ use crate::faults::Effect;
 use crate::geometry::Pose;
 use crate::radio::LossCause;
 
+use super::detection::{DetectionRecord, StatusTrace};
 use super::latency::LatencyHistogram;
 
 /// Everything that one trial leaves behind.
@@ -36,8 +37,8 @@ pub struct TrialRecord {
     pub traffic: Vec<TrafficRow>,
     /// Time from the start of a transmission to its arrival, of all delivered frames.
     pub latency: LatencyHistogram,
-    /// Times that a robot came to believe that another was down.
-    pub suspicions: u64,
+    /// What robots believed of each other's failures, held against the truth.
+    pub detection: DetectionRecord,
     /// What failed and when, in order of time: the truth that robots never see.
     pub faults: Vec<FaultEpisode>,
     /// Every failure of a robot that worked for a target, and how the target got its links back, in order of time.
@@ -48,6 +49,9 @@ pub struct TrialRecord {
     pub robots: Vec<RobotState>,
     /// Positions at each sample time (metres, robot by robot), as f32: for pictures.
     pub trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
+    /// The statuses of the robot that the run was asked to follow, if it was; kept nowhere.
+    #[serde(skip)]
+    pub trace: Option<StatusTrace>,
 }
 
 impl TrialRecord {

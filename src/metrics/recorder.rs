@@ -1,13 +1,14 @@
 //! The recorder: told of everything that happens in a run, it leaves a [`TrialRecord`].
 
 use crate::engine::{ActorId, SimTime, Span};
-use crate::faults::Change;
+use crate::faults::{Change, Subject};
 use crate::geometry::{Pose, Vec2};
-use crate::protocol::{Note, Topic};
+use crate::protocol::{Note, Reception, Topic};
 use crate::radio::LossCause;
 
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
+use super::detection::{CopyFate, Scorer, StatusTrace};
 use super::faults::Failures;
 use super::healing::Healing;
 use super::latency::LatencyHistogram;
@@ -33,6 +34,10 @@ pub struct Layout {
     pub control_period: Span,
     /// What the swarm is asked to do, if anything.
     pub mission: Option<Mission>,
+    /// How far back a suspicion is traced to the statuses that were missed.
+    pub status_memory: Span,
+    /// The robot whose statuses are followed one by one, if any.
+    pub trace: Option<ActorId>,
 }
 
 /// What only the hub knows when a run is over.
@@ -68,7 +73,8 @@ pub struct Recorder {
     reports: Reports,
     failures: Failures,
     healing: Healing,
-    suspicions: u64,
+    detection: Scorer,
+    trace: Option<StatusTrace>,
     judge: Option<Judge>,
     connectivity: Vec<ConnectivitySample>,
     trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
@@ -92,7 +98,8 @@ impl Recorder {
             reports: Reports::new(layout.robots),
             failures: Failures::new(layout.robots),
             healing: Healing::new(layout.topics),
-            suspicions: 0,
+            detection: Scorer::new(layout.robots, layout.status_memory),
+            trace: layout.trace.map(StatusTrace::new),
             judge: layout
                 .mission
                 .map(|mission| Judge::new(mission, hold, layout.control_period)),
@@ -145,7 +152,6 @@ impl Recorder {
         if let Note::Role(role) = note {
             self.traffic.enter(robot, *role);
         }
-        self.suspicions += u64::from(matches!(note, Note::Suspects { .. }));
         self.reports.note(robot, note);
     }
 
@@ -159,6 +165,46 @@ impl Recorder {
             let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
             self.healing.strike(now, change.fault, &blow, mission, scene);
         }
+        if let Subject::Robot { robot, health, .. } = change.subject {
+            self.detection.fault(now, robot, health);
+        }
+    }
+
+    /// `sender` sent a status, its frame number `sequence`.
+    pub fn status_sent(&mut self, now: SimTime, sender: ActorId, sequence: u32) {
+        self.detection.sent(now, sender, sequence);
+        if let Some(trace) = self.trace_of(sender) {
+            trace.sent(now, sequence);
+        }
+    }
+
+    /// The copy of a status that was meant for `receiver` was lost, which [`lost`](Self::lost) is told as well.
+    #[inline]
+    pub fn status_lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {
+        self.detection.lost(receiver, sender, sequence, cause);
+        if let Some(trace) = self.trace_of(sender) {
+            trace.fate(sequence, receiver, CopyFate::Lost(cause));
+        }
+    }
+
+    /// `observer` may have reported a belief about another robot, with the frames in `waiting` on their way to it.
+    ///
+    /// # Panics
+    /// If it believes something of a robot that it does not watch.
+    pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, waiting: &[Reception<M>]) {
+        self.detection.belief(now, observer, note, waiting);
+    }
+
+    /// Where the statuses of `sender` are followed one by one, if they are.
+    #[inline]
+    pub fn trace_of(&mut self, sender: ActorId) -> Option<&mut StatusTrace> {
+        self.trace.as_mut().filter(|trace| trace.robot == sender)
+    }
+
+    /// Whether any robot's statuses are followed.
+    #[must_use]
+    pub fn is_tracing(&self) -> bool {
+        self.trace.is_some()
     }
 
     /// Samples the graph of the live robots and where everyone is, `positions` in order of ids.
@@ -242,7 +288,8 @@ impl Recorder {
             ledger,
             traffic,
             latency: self.latency,
-            suspicions: self.suspicions,
+            detection: self.detection.finish(end.simulated),
+            trace: self.trace,
             faults: self.failures.into_episodes(),
             healing: self.healing.into_episodes(),
             connectivity: self.connectivity,
@@ -303,6 +350,8 @@ mod tests {
             radio_range: RANGE,
             control_period: Span::from_secs(0.1),
             mission,
+            status_memory: Span::from_secs(8.0),
+            trace: None,
         };
         Recorder::new(layout, &MetricsConfig::default())
     }

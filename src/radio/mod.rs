@@ -28,11 +28,13 @@ mod sensing;
 pub use config::{LatencyConfig, LossConfig, RadioConfig, SensingConfig};
 pub use medium::Medium;
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::Vec2;
 
 /// Why a frame did not reach a receiver.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum LossCause {
     /// The channel's loss model dropped it.

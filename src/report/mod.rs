@@ -1,6 +1,9 @@
 //! Finished results as text for people.
 
+mod explanation;
+mod layout;
 mod number;
 mod terminal;
 
+pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use terminal::{Input, Speed, terminal};

@@ -5,12 +5,11 @@ use std::path::Path;
 
 use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle, Table, TableStyle};
 
+use super::layout::{WIDTH, wrap};
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use crate::metrics::Summary;
-use crate::metrics::summary::{Directions, HealingSummary, Quantity, Spread, TopicBandwidth};
+use crate::metrics::summary::{Detection, Directions, HealingSummary, Quantity, Spread, TopicBandwidth};
 
-/// Columns that every line keeps within.
-const WIDTH: usize = 80;
 /// Columns of the names on the left.
 const MARGIN: usize = 14;
 
@@ -57,6 +56,7 @@ pub fn terminal(input: &Input) -> String {
     bandwidth(&mut page, input.summary);
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
+    detection(&mut page, &input.summary.detection);
     run(&mut page, input);
     page.text
 }
@@ -323,6 +323,50 @@ fn connectivity(page: &mut Page, summary: &Summary) {
     page.entry("in one piece", &format!("{connected} of the time"));
 }
 
+fn detection(page: &mut Page, detection: &Detection) {
+    page.heading("Failure detection");
+    if detection.monitored_s.value <= 0.0 {
+        page.line("  no robot watched another");
+        return;
+    }
+    let Detection {
+        suspicions, failures, ..
+    } = detection;
+    let by_cause = suspicions.by_cause.0.iter().filter(|(_, number)| *number > 0);
+    let by_cause: Vec<_> = by_cause
+        .map(|(cause, number)| format!("{} {}", cause.replace('_', " "), count(*number)))
+        .collect();
+    let causes = match &by_cause[..] {
+        [] => String::new(),
+        causes => format!(", for {}", causes.join(", ")),
+    };
+    page.entry("suspicions", &format!("{}{causes}", count(suspicions.value)));
+    let mistakes = match detection.mistakes.value {
+        0 => "none".to_owned(),
+        mistakes => format!(
+            "{}: of a pair of robots one every {} s, for {} s",
+            count(mistakes),
+            estimate(&detection.mistake_recurrence_s.estimate, figure),
+            estimate(&detection.mistake_duration_s.estimate, figure)
+        ),
+    };
+    page.entry("mistakes", &mistakes);
+    let accuracy = estimate(&detection.query_accuracy.estimate, percent);
+    page.entry(
+        "accuracy",
+        &format!("robots that were well were trusted {accuracy} of the time"),
+    );
+    if failures.observed > 0 {
+        let time = estimate(&detection.detection_time_s.estimate, figure);
+        let detected = format!(
+            "{} of {} detected by those who watched, after {time} s on average",
+            count(failures.detected),
+            count(failures.observed)
+        );
+        page.entry("failures", &detected);
+    }
+}
+
 fn run(page: &mut Page, input: &Input) {
     page.heading("Run");
     let Speed {
@@ -396,19 +440,4 @@ impl Page {
             words.to_owned()
         }
     }
-}
-
-/// Breaks `words` at blanks into lines of at most `width` characters; a longer word stands alone.
-fn wrap(words: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in words.split(' ').filter(|word| !word.is_empty()) {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }

@@ -189,7 +189,8 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         let help = "make `control.period` a multiple of `motion.tick`";
         found.push(Problem::new("control.period", message, help).with(&["motion.tick"]));
     }
-    let status = scenario.gossip.status.steps(Span::from_secs(period)) as f64 * period;
+    let status = Span::from_secs(period) * scenario.gossip.status.steps(Span::from_secs(period));
+    let status = status.as_secs();
     let silence = scenario.detector.longest_silence().as_secs();
     if status >= silence {
         let message = format!(

@@ -11,6 +11,7 @@ use super::inbox::Inbox;
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::Faults;
 use crate::metrics::Recorder;
+use crate::metrics::detection::CopyFate;
 use crate::motion::World;
 use crate::protocol::{Frame, Protocol, Reception};
 use crate::radio::{Fate, Listener, LossCause, Medium};
@@ -103,6 +104,9 @@ impl<P: Protocol> Air<P> {
         for message in messages {
             self.transmit(now, sender, message, faults, recorder, digest)?;
         }
+        if let Some(trace) = recorder.trace_of(sender) {
+            trace.distances(now, distances(now, sender, self.inboxes.len(), world));
+        }
         Ok(())
     }
 
@@ -126,6 +130,10 @@ impl<P: Protocol> Air<P> {
             .decode(&mut self.payload)?
             .ok_or(RunError::Undecodable { topic })?;
         recorder.transmitted(sender, topic, payload_bytes);
+        let is_status = P::STATUS == Some(topic);
+        if is_status {
+            recorder.status_sent(now, sender, self.medium.upcoming(sender));
+        }
         recorder.offered(topic, self.listeners.len() as u64);
         let frame = Rc::new(Frame {
             sender,
@@ -153,8 +161,13 @@ impl<P: Protocol> Air<P> {
                 at,
                 displacement,
             }),
-            Fate::Lost(cause) => recorder.lost(receiver, topic, cause, payload_bytes),
+            Fate::Lost(cause) => record_loss::<P>(receiver, &frame, cause, recorder),
         });
+        if is_status && let Some(trace) = recorder.trace_of(sender) {
+            for arrival in &self.arrivals {
+                trace.fate(frame.sequence, arrival.receiver, CopyFate::Arrives(arrival.at));
+            }
+        }
         for arrival in self.arrivals.drain(..) {
             if self.tell_reached {
                 self.reached.push(arrival.receiver);
@@ -173,7 +186,7 @@ impl<P: Protocol> Air<P> {
         self.reachable.clear();
         for (listener, &loss) in self.listeners.iter().zip(&self.hindrances) {
             if faults.stops(loss, frame.sender, listener.id, frame.sequence) {
-                recorder.lost(listener.id, frame.topic, LossCause::LinkFault, frame.payload_bytes);
+                record_loss::<P>(listener.id, frame, LossCause::LinkFault, recorder);
             } else {
                 self.reachable.push(*listener);
             }
@@ -197,8 +210,7 @@ impl<P: Protocol> Air<P> {
         let since = self.deaf_since[receiver.index()];
         if since < until {
             self.inboxes[receiver.index()].drop_arrivals(since, until, |reception| {
-                let frame = &reception.frame;
-                recorder.lost(receiver, frame.topic, LossCause::ReceiverDown, frame.payload_bytes);
+                record_loss::<P>(receiver, &reception.frame, LossCause::ReceiverDown, recorder);
             });
         }
     }
@@ -216,6 +228,18 @@ impl<P: Protocol> Air<P> {
         for reception in arrived.iter() {
             record_delivery(receiver, reception, recorder);
         }
+        if recorder.is_tracing() {
+            for Reception { frame, .. } in arrived.iter() {
+                if let Some(trace) = recorder.trace_of(frame.sender) {
+                    trace.read(now, frame.sequence, receiver);
+                }
+            }
+        }
+    }
+
+    /// What is on its way to `receiver`.
+    pub fn waiting(&self, receiver: ActorId) -> &[Reception<P::Message>] {
+        self.inboxes[receiver.index()].waiting()
     }
 
     /// The earliest arrival that still waits for `receiver`; none if it cannot hear.
@@ -247,6 +271,13 @@ impl<P: Protocol> Air<P> {
     }
 }
 
+fn record_loss<P: Protocol>(receiver: ActorId, frame: &Frame<P::Message>, cause: LossCause, recorder: &mut Recorder) {
+    recorder.lost(receiver, frame.topic, cause, frame.payload_bytes);
+    if P::STATUS == Some(frame.topic) {
+        recorder.status_lost(receiver, frame.sender, frame.sequence, cause);
+    }
+}
+
 fn record_delivery<M>(receiver: ActorId, reception: &Reception<M>, recorder: &mut Recorder) {
     let frame = &reception.frame;
     recorder.delivered(
@@ -255,4 +286,11 @@ fn record_delivery<M>(receiver: ActorId, reception: &Reception<M>, recorder: &mu
         frame.payload_bytes,
         reception.at.since(frame.sent_at),
     );
+}
+
+/// How far every robot is from `sender`, metres, in order of ids.
+fn distances(now: SimTime, sender: ActorId, robots: usize, world: &World) -> Vec<f32> {
+    let here = world.position(sender, now);
+    let distance = |robot| (world.position(ActorId(robot), now) - here).norm() as f32;
+    (0..robots as u32).map(distance).collect()
 }

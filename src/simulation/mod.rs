@@ -17,4 +17,4 @@ mod trial;
 
 pub use error::RunError;
 pub use setup::{DriverKind, Setup};
-pub use trial::{TrialError, run_trial};
+pub use trial::{TrialError, run_trial, trace_trial};

@@ -281,6 +281,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         self.digest.wake(now, robot, input, output);
         for note in output.notes.drain(..) {
             self.recorder.note(robot, &note);
+            self.recorder.belief(now, robot, &note, self.air.waiting(robot));
             if let Note::Role(role) = note {
                 self.faults.enter(now, robot, role.0);
                 self.plan_faults();

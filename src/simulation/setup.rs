@@ -8,12 +8,13 @@ use tokio_util::sync::CancellationToken;
 use super::air::Air;
 use super::error::RunError;
 use super::run::{Rhythm, Run};
-use crate::engine::{Actors, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
+use crate::engine::{ActorId, Actors, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
 use crate::geometry::Pose;
 use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, PhaseConfig, WakeConfig};
+use crate::protocol::detector::DetectorConfig;
 use crate::protocol::{Protocol, Robot};
 use crate::radio::{Medium, RadioConfig};
 
@@ -62,6 +63,10 @@ pub struct Setup {
     pub faults: Vec<FaultConfig>,
     /// What is measured.
     pub metrics: MetricsConfig,
+    /// The failure detector that robots run: so far back are suspicions traced to what became of the statuses.
+    pub detector: DetectorConfig,
+    /// A robot whose statuses are to be followed one by one, into [`TrialRecord::trace`].
+    pub trace: Option<ActorId>,
     /// What counts as completion, if anything does.
     pub mission: Option<Mission>,
 }
@@ -148,6 +153,9 @@ impl Setup {
             radio_range: self.radio.range.get(),
             control_period: Span::from_secs(self.control.period.get()),
             mission: self.mission.clone(),
+            // A status may be that much older than the silence that it began, when its latency is long.
+            status_memory: self.detector.longest_silence() * 2,
+            trace: self.trace,
         }
     }
 

@@ -34,7 +34,34 @@ pub fn run_trial(
     driver: DriverKind,
     stop: &CancellationToken,
 ) -> Result<TrialRecord, TrialError> {
-    let mut setup = setup(scenario, trial);
+    run(scenario, trial, None, driver, stop)
+}
+
+/// Runs a trial as [`run_trial`] does, and follows every status of `robot` into [`TrialRecord::trace`]. Whoever is
+/// followed, the run is the same, digest and all.
+///
+/// # Errors
+/// As [`run_trial`].
+pub fn trace_trial(
+    scenario: &Scenario,
+    trial: u32,
+    robot: ActorId,
+    stop: &CancellationToken,
+) -> Result<TrialRecord, TrialError> {
+    run(scenario, trial, Some(robot), DriverKind::Inline, stop)
+}
+
+fn run(
+    scenario: &Scenario,
+    trial: u32,
+    trace: Option<ActorId>,
+    driver: DriverKind,
+    stop: &CancellationToken,
+) -> Result<TrialRecord, TrialError> {
+    let mut setup = Setup {
+        trace,
+        ..setup(scenario, trial)
+    };
     let body_radius = scenario.motion.body_radius.get();
     let swarm = &scenario.swarm;
     let poses = deploy(
@@ -71,6 +98,8 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         radio: scenario.radio.clone(),
         faults: scenario.faults.clone(),
         metrics: scenario.metrics.clone(),
+        detector: scenario.detector.clone(),
+        trace: None,
         mission: None,
     }
 }

@@ -8,10 +8,12 @@ use desim::experiment::{Ending, Experiment, ExperimentError, Parts};
 use desim::export::{Folder, Manifest, Pictures, write};
 use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
+use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
 use desim::metrics::{
     ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotState, TopicFates,
     TrafficRow, TrialRecord, Volume,
 };
+use desim::radio::LossCause;
 use desim::scenario::{Scenario, parse};
 use tokio_util::sync::CancellationToken;
 
@@ -53,14 +55,62 @@ pub fn record(trial: u32) -> TrialRecord {
             .flat_map(|robot| (0..2).map(move |topic| traffic(robot, topic, trial)))
             .collect(),
         latency,
-        suspicions: u64::from(trial),
         faults: faults(trial),
         healing: healing(trial),
+        detection: detection(trial),
+        trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
         robots: (0..ROBOTS).map(|robot| state(robot, odd)).collect(),
         trajectories: (0..SAMPLES)
             .map(|sample| (SimTime::from_secs(sample as f64 * 5.0), places(sample)))
             .collect(),
+    }
+}
+
+/// Suspicions of every verdict and failures of every outcome.
+fn detection(trial: u32) -> DetectionRecord {
+    let causes = [
+        Cause::Failure,
+        Cause::Lost(LossCause::Channel),
+        Cause::OutOfRange,
+        Cause::Lost(LossCause::ReceiverDown),
+        Cause::Latency,
+        Cause::NotSent,
+    ];
+    let suspicion = |(number, cause): (u32, Cause)| Suspicion {
+        observer: ActorId(number),
+        subject: ActorId(8),
+        at: SimTime::from_secs(10.0 + f64::from(number)),
+        heard: SimTime::from_secs(6.0 + f64::from(number)),
+        sequence: 60,
+        until: (number > 0).then(|| SimTime::from_secs(11.0 + f64::from(number))),
+        subject_down: number == 0,
+        cause,
+        missed: Missed {
+            out_of_range: number,
+            ..Missed::default()
+        },
+        duration: (number == 1).then(|| Span::from_secs(0.7 + f64::from(trial) / 10.0)),
+    };
+    let outcomes = [
+        FailureOutcome::Detected(Span::from_secs(3.2 + f64::from(trial) / 7.0)),
+        FailureOutcome::Detected(Span::ZERO),
+        FailureOutcome::Recovered,
+        FailureOutcome::ObserverFailed,
+        FailureOutcome::Undetected,
+    ];
+    let failure = |(observer, outcome): (u32, FailureOutcome)| ObservedFailure {
+        subject: ActorId(8),
+        observer: ActorId(observer),
+        at: SimTime::from_secs(7.0),
+        outcome,
+    };
+    DetectionRecord {
+        pairs: 20,
+        monitored_s: 1100.0 + f64::from(trial) / 3.0,
+        mistaken_s: 2.1,
+        suspicions: (0..).zip(causes).map(suspicion).collect(),
+        failures: (0..).zip(outcomes).map(failure).collect(),
     }
 }
 

@@ -77,6 +77,7 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
     let expected = [
         "bandwidth.parquet",
         "connectivity.parquet",
+        "detection.parquet",
         "faults.parquet",
         "final_0.svg",
         "frames.parquet",
@@ -113,6 +114,7 @@ fn a_kept_trial_comes_back_bit_for_bit() {
     record.connectivity[2].lambda2 = f64::MIN_POSITIVE.next_down();
     record.trajectories[0].1[0] = [f32::MIN_POSITIVE / 8.0, 16_777_217.0_f32.sqrt()];
     record.robots[0].pose.heading = -0.0;
+    record.detection.monitored_s = 1e17 / 3.0;
     let part = FinishedTrial {
         wall_s: 1.0 / 3.0,
         record,

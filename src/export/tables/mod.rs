@@ -2,6 +2,7 @@
 
 mod bandwidth;
 mod connectivity;
+mod detection;
 mod faults;
 mod frames;
 mod healing;
@@ -25,6 +26,7 @@ pub struct Tables {
     bandwidth: Table<bandwidth::Row>,
     latency: Table<latency::Row>,
     connectivity: Table<connectivity::Row>,
+    detection: Table<detection::Row>,
     robots: Table<robots::Row>,
     trajectories: Table<trajectories::Row>,
     faults: Table<faults::Row>,
@@ -33,7 +35,7 @@ pub struct Tables {
 
 impl Tables {
     /// Names of the files.
-    pub const FILES: [&str; 9] = [
+    pub const FILES: [&str; 10] = [
         "trials.parquet",
         "frames.parquet",
         "bandwidth.parquet",
@@ -43,6 +45,7 @@ impl Tables {
         "trajectories.parquet",
         "faults.parquet",
         "healing.parquet",
+        "detection.parquet",
     ];
 
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
@@ -62,6 +65,7 @@ impl Tables {
             trajectories: Table::create(&path(6), trajectories::columns())?,
             faults: Table::create(&path(7), faults::columns())?,
             healing: Table::create(&path(8), healing::columns(&names))?,
+            detection: Table::create(&path(9), detection::columns())?,
         })
     }
 
@@ -75,6 +79,7 @@ impl Tables {
         self.bandwidth.extend(bandwidth::rows(record, &self.names))?;
         self.latency.extend(latency::rows(record))?;
         self.connectivity.extend(connectivity::rows(record))?;
+        self.detection.extend(detection::rows(record))?;
         self.robots.extend(robots::rows(record, &self.names))?;
         self.trajectories.extend(trajectories::rows(record))?;
         self.faults.extend(faults::rows(record, &self.names))?;
@@ -91,6 +96,7 @@ impl Tables {
         self.bandwidth.finish()?;
         self.latency.finish()?;
         self.connectivity.finish()?;
+        self.detection.finish()?;
         self.robots.finish()?;
         self.trajectories.finish()?;
         self.faults.finish()?;

@@ -26,6 +26,29 @@ pub fn mean(values: &[f64]) -> Estimate {
     }
 }
 
+/// The ratio of two sums, of what each trial counts over what it watches, for figures that a short trial may not have on
+/// its own: no trial is left out, and a trial weighs as much as it watched. The interval is the ratio estimator's
+/// (Cochran, 1977, section 6.3: Student's t of the residuals aᵢ − R bᵢ); neither of the parts is negative, and nor is the
+/// interval. No interval from fewer than two trials, no value where nothing was watched.
+#[must_use]
+pub fn ratio(parts: &[[f64; 2]]) -> Estimate {
+    let n = parts.len() as f64;
+    let sum = |part: usize| parts.iter().map(|parts| parts[part]).sum::<f64>();
+    let watched = sum(1);
+    let value = (watched > 0.0).then(|| sum(0) / watched);
+    let half_width = value.and_then(|value| {
+        let squares: f64 = parts.iter().map(|[a, b]| (a - value * b).powi(2)).sum();
+        let student = StudentsT::new(0.0, 1.0, n - 1.0).ok()?;
+        Some(student.inverse_cdf(1.0 - TAIL) * (squares / (n - 1.0) / n).sqrt() / (watched / n))
+    });
+    let end = |sign: f64| Some((value? + sign * half_width?).max(0.0));
+    Estimate {
+        value,
+        ci95: [end(-1.0), end(1.0)],
+        n: parts.len() as u64,
+    }
+}
+
 /// The median of `values`, one a trial and none of them censored, between the order statistics that hold it with at
 /// least 95 % whatever the distribution (binomial, equal tails). It needs no random numbers and assumes nothing, which
 /// a bootstrap of so few trials does; below six trials there is no such interval.
@@ -103,6 +126,22 @@ mod tests {
         assert!((mean(&x).value.unwrap() - 12.4).abs() < 1e-12);
         assert_interval(mean(&x), 6.198_406_171_035_676, 18.601_593_828_964_326);
         assert_interval(mean(&[1.0, 3.0]), -10.706_204_736_174_694, 14.706_204_736_174_694);
+    }
+
+    #[test]
+    fn a_ratio_of_sums_over_equal_watches_is_the_mean_and_its_interval() {
+        let x = [12.0, 7.0, 3.0, 25.0, 8.0, 14.0, 9.0, 30.0, 11.0, 5.0];
+        let doubled = ratio(&x.map(|a| [a, 2.0]));
+        assert!((doubled.value.unwrap() - 6.2).abs() < 1e-12);
+        assert_interval(doubled, 6.198_406_171_035_676 / 2.0, 18.601_593_828_964_326 / 2.0);
+    }
+
+    #[test]
+    fn a_ratio_of_proportional_sums_has_no_width_and_one_over_nothing_no_value() {
+        let exact = ratio(&[[1.0, 2.0], [5.0, 10.0], [0.0, 0.0]]);
+        assert_eq!((exact.value, exact.ci95, exact.n), (Some(0.5), [Some(0.5); 2], 3));
+        let nothing = ratio(&[[0.0, 0.0]; 3]);
+        assert_eq!((nothing.value, nothing.ci95, nothing.n), (None, [None; 2], 3));
     }
 
     #[test]

@@ -6,7 +6,7 @@ mod location;
 mod spread;
 mod survival;
 
-pub use location::{mean, median, proportion};
+pub use location::{mean, median, proportion, ratio};
 pub use spread::{gini, quantile};
 pub use survival::{Observation, median_survival};
 

@@ -3,11 +3,13 @@
 //! Everything here follows from the records alone and depends on no machine. Keys and their order are stable.
 
 mod bandwidth;
+mod detection;
 mod faults;
 mod frames;
 mod quantity;
 
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
+pub use detection::{Detection, Failures, Suspicions};
 pub use faults::{FaultSummary, Healed, HealingSummary, HealingTime};
 pub use frames::{Fates, Frames};
 pub use quantity::{Measured, Named, Quantity, Unit};
@@ -62,6 +64,8 @@ pub struct Summary {
     /// How targets got their links back; absent if no robot failed that worked for one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub healing: Option<HealingSummary>,
+    /// Failure detection, against the truth.
+    pub detection: Detection,
     /// Control steps simulated, over all trials.
     pub steps: Quantity<u64>,
     /// Time simulated, over all trials.
@@ -137,6 +141,7 @@ impl Summary {
             },
             faults: FaultSummary::of(roles, records),
             healing: HealingSummary::of(topics, roles, records),
+            detection: Detection::of(records),
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
                 unit: STEPS.into(),

@@ -3,6 +3,7 @@ use serde_json::Value;
 use super::*;
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::{Pose, Vec2};
+use crate::metrics::detection::{Cause, DetectionRecord, Missed, Suspicion};
 use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, RunEnd};
 use crate::protocol::{Note, Role, Topic};
 use crate::radio::LossCause;
@@ -27,6 +28,8 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
             root: ActorId(0),
             worker_role: Role(1),
         }),
+        status_memory: Span::from_secs(8.0),
+        trace: None,
     };
     let mut recorder = Recorder::new(layout, &MetricsConfig::default());
     for frame in 0..10 {
@@ -235,4 +238,43 @@ fn an_experiment_without_trials_or_mission_has_absent_figures_not_invented_ones(
         [None, None],
         "one trial has no interval"
     );
+}
+
+#[test]
+fn detection_figures_are_ratios_of_sums_over_trials() {
+    let mistake = |duration: f64| Suspicion {
+        observer: ActorId(1),
+        subject: ActorId(0),
+        at: SimTime::from_secs(5.0),
+        heard: SimTime::from_secs(1.0),
+        sequence: 3,
+        until: None,
+        subject_down: false,
+        cause: Cause::Lost(LossCause::Channel),
+        missed: Missed::default(),
+        duration: Some(Span::from_secs(duration)),
+    };
+    let mut records = [trial(0, 8), trial(1, 6)];
+    records[0].detection = DetectionRecord {
+        pairs: 2,
+        monitored_s: 100.0,
+        mistaken_s: 4.0,
+        suspicions: vec![mistake(1.0), mistake(3.0)],
+        failures: Vec::new(),
+    };
+    records[1].detection.monitored_s = 60.0;
+    let detection = Summary::of("duet", &TOPICS, &ROLES, &records).detection;
+    assert_eq!((detection.suspicions.value, detection.mistakes.value), (2, 2));
+    let value = |measured: &Measured| measured.estimate.value;
+    assert_eq!(
+        value(&detection.mistake_recurrence_s),
+        Some(80.0),
+        "a trial without a mistake counts too"
+    );
+    assert_eq!(value(&detection.mistake_rate_hz), Some(1.0 / 80.0));
+    assert_eq!(value(&detection.mistake_duration_s), Some(2.0));
+    assert_eq!(value(&detection.query_accuracy), Some(1.0 - 4.0 / 160.0));
+    assert_eq!(value(&detection.detection_time_s), None, "nobody failed");
+    let [low, high] = detection.query_accuracy.estimate.ci95;
+    assert!(low < Some(0.975) && high > Some(0.975) && detection.query_accuracy.estimate.n == 2);
 }

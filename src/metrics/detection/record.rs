@@ -1,0 +1,227 @@
+//! What the failure detectors of one trial did.
+
+use serde::{Deserialize, Serialize};
+
+use crate::engine::{ActorId, SimTime, Span};
+use crate::radio::LossCause;
+
+/// What the failure detectors of one trial did, held against the truth.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DetectionRecord {
+    /// Pairs of an observer and a subject that it read a status of.
+    pub pairs: u64,
+    /// Monitored time, summed over pairs, seconds.
+    pub monitored_s: f64,
+    /// The part of it that pairs spent in a mistake, seconds.
+    pub mistaken_s: f64,
+    /// Every suspicion, in order of time.
+    pub suspicions: Vec<Suspicion>,
+    /// Every failure of a robot to send, once for each observer that monitored it then, in order of time.
+    pub failures: Vec<ObservedFailure>,
+}
+
+/// An observer came to believe that a subject is down.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Suspicion {
+    /// Who suspects.
+    pub observer: ActorId,
+    /// Whom.
+    pub subject: ActorId,
+    /// Since when.
+    pub at: SimTime,
+    /// When the subject's last status had arrived.
+    pub heard: SimTime,
+    /// The newest of the subject's frames that had arrived, by its number among them.
+    pub sequence: u32,
+    /// When the observer trusted the subject again; `None` if it never did.
+    pub until: Option<SimTime>,
+    /// Whether the subject could not send at that instant.
+    pub subject_down: bool,
+    /// What it was due to.
+    pub cause: Cause,
+    /// What became of the statuses that the observer should have heard.
+    pub missed: Missed,
+    /// Duration of a mistake that ended in trust, neither robot failing meanwhile.
+    pub duration: Option<Span>,
+}
+
+impl Suspicion {
+    /// What to make of it.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        match self.cause {
+            _ if self.subject_down => Verdict::Right,
+            Cause::OutOfRange => Verdict::OutOfRange,
+            Cause::Lost(LossCause::ReceiverDown) => Verdict::Observer,
+            _ => Verdict::Mistake,
+        }
+    }
+}
+
+/// What to make of a suspicion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// The subject could not send.
+    Right,
+    /// The subject was well and so was the way to it: the detector erred.
+    Mistake,
+    /// The subject was well and out of range.
+    OutOfRange,
+    /// The observer could not hear.
+    Observer,
+}
+
+impl Verdict {
+    /// Every verdict.
+    pub const ALL: [Self; 4] = [Self::Right, Self::Mistake, Self::OutOfRange, Self::Observer];
+
+    /// The name that tables use.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Right => "right",
+            Self::Mistake => "mistake",
+            Self::OutOfRange => "out_of_range",
+            Self::Observer => "observer",
+        }
+    }
+}
+
+/// What a suspicion was due to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Cause {
+    /// The subject could not send: at that instant, or for more than half of the silence.
+    Failure,
+    /// Most of the statuses missed were lost for this reason.
+    Lost(LossCause),
+    /// Most of them were sent while the observer was out of range.
+    OutOfRange,
+    /// Most of them were still under way.
+    Latency,
+    /// The subject sent none.
+    NotSent,
+}
+
+impl Cause {
+    /// Every cause, in the order in which reports name them.
+    pub const ALL: [Self; LossCause::ALL.len() + 4] = {
+        let mut all = [Self::Failure; LossCause::ALL.len() + 4];
+        let mut cause = 0;
+        while cause < LossCause::ALL.len() {
+            all[cause + 1] = Self::Lost(LossCause::ALL[cause]);
+            cause += 1;
+        }
+        all[cause + 1] = Self::OutOfRange;
+        all[cause + 2] = Self::Latency;
+        all[cause + 3] = Self::NotSent;
+        all
+    };
+
+    /// The name that reports and tables use.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Failure => "failure",
+            Self::Lost(cause) => cause.name(),
+            Self::OutOfRange => "out_of_range",
+            Self::Latency => "latency",
+            Self::NotSent => "not_sent",
+        }
+    }
+}
+
+/// What became of the statuses that a subject sent after the newest that arrived and before it was suspected.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Missed {
+    /// Lost on the way, by cause in the order of [`LossCause::ALL`].
+    pub lost: [u32; LossCause::ALL.len()],
+    /// Sent while the observer was out of range.
+    pub out_of_range: u32,
+    /// Still under way.
+    pub under_way: u32,
+}
+
+impl Missed {
+    /// What most of them suffered; of equals, losses come first, in the order of [`LossCause::ALL`], then the range.
+    #[must_use]
+    pub fn cause(&self) -> Cause {
+        let lost = LossCause::ALL.into_iter().map(Cause::Lost).zip(self.lost);
+        let rest = [(Cause::OutOfRange, self.out_of_range), (Cause::Latency, self.under_way)];
+        lost.chain(rest)
+            .fold(
+                (Cause::NotSent, 0),
+                |most, next| if next.1 > most.1 { next } else { most },
+            )
+            .0
+    }
+}
+
+/// A robot failed to send, as one observer that monitored it then saw it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ObservedFailure {
+    /// Who failed.
+    pub subject: ActorId,
+    /// Who watched it.
+    pub observer: ActorId,
+    /// When it failed.
+    pub at: SimTime,
+    /// What the observer made of it.
+    pub outcome: FailureOutcome,
+}
+
+/// What an observer made of a failure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FailureOutcome {
+    /// It suspected the robot for good after so long: zero if it did already.
+    Detected(Span),
+    /// The robot was well again before the observer suspected it.
+    Recovered,
+    /// The observer could hear no more before it suspected the robot.
+    ObserverFailed,
+    /// The run ended first.
+    Undetected,
+}
+
+impl FailureOutcome {
+    /// The name that tables use.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Detected(_) => "detected",
+            Self::Recovered => "recovered",
+            Self::ObserverFailed => "observer_failed",
+            Self::Undetected => "undetected",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn missed(channel: u32, out_of_range: u32, under_way: u32) -> Missed {
+        let mut missed = Missed {
+            out_of_range,
+            under_way,
+            ..Missed::default()
+        };
+        missed.lost[LossCause::Channel as usize] = channel;
+        missed
+    }
+
+    #[test]
+    fn the_cause_is_what_most_statuses_suffered_and_a_loss_before_its_equals() {
+        assert_eq!(missed(0, 0, 0).cause(), Cause::NotSent);
+        assert_eq!(missed(2, 3, 1).cause(), Cause::OutOfRange);
+        assert_eq!(missed(2, 1, 3).cause(), Cause::Latency);
+        assert_eq!(missed(2, 2, 2).cause(), Cause::Lost(LossCause::Channel));
+    }
+
+    #[test]
+    fn every_cause_is_listed_once_under_a_name_of_its_own() {
+        let mut names = Cause::ALL.map(Cause::name).to_vec();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), Cause::ALL.len());
+    }
+}

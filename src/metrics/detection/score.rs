@@ -1,0 +1,425 @@
+//! Beliefs held against the truth, as both change.
+
+use crate::engine::{ActorId, SimTime, Span};
+use crate::faults::Health;
+use crate::protocol::{Note, Reception};
+use crate::radio::LossCause;
+
+use super::log::StatusLog;
+use super::record::{Cause, DetectionRecord, FailureOutcome, ObservedFailure, Suspicion, Verdict};
+
+/// Scores the failure detectors of one run.
+#[derive(Debug)]
+pub struct Scorer {
+    log: StatusLog,
+    health: Vec<Health>,
+    /// When each robot could not send; the last stretch may be open.
+    silences: Vec<Vec<(SimTime, SimTime)>>,
+    /// By observer: whom it watches.
+    pairs: Vec<Vec<Pair>>,
+    tally: Tally,
+}
+
+/// What has been counted.
+#[derive(Debug, Default)]
+struct Tally {
+    monitored_nanos: u128,
+    mistaken_nanos: u128,
+    suspicions: Vec<Suspicion>,
+    failures: Vec<ObservedFailure>,
+}
+
+/// A subject, at its observer.
+#[derive(Debug)]
+struct Pair {
+    subject: ActorId,
+    /// Since when the pair is monitored, in one stretch and with one belief.
+    since: Option<SimTime>,
+    /// The suspicion in force, by its place in the tally.
+    suspicion: Option<usize>,
+    /// Whether that is a mistake.
+    mistaken: bool,
+    /// The failure that is to be detected, by its place in the tally.
+    failure: Option<usize>,
+}
+
+impl Scorer {
+    /// A scorer of robots that all are well, which traces suspicions back by `memory` at least.
+    pub fn new(robots: usize, memory: Span) -> Self {
+        Self {
+            log: StatusLog::new(robots, memory),
+            health: vec![Health::WELL; robots],
+            silences: vec![Vec::new(); robots],
+            pairs: std::iter::repeat_with(Vec::new).take(robots).collect(),
+            tally: Tally::default(),
+        }
+    }
+
+    /// `sender` sends a status, its frame number `sequence`.
+    #[inline]
+    pub fn sent(&mut self, now: SimTime, sender: ActorId, sequence: u32) {
+        self.log.sent(now, sender, sequence);
+    }
+
+    /// The copy of a status that was meant for `receiver` is lost.
+    #[inline]
+    pub fn lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {
+        self.log.lost(receiver, sender, sequence, cause);
+    }
+
+    /// `observer` reported a belief; `waiting` is on its way to it.
+    ///
+    /// # Panics
+    /// If it reports a belief about a robot that it does not watch.
+    pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, waiting: &[Reception<M>]) {
+        match *note {
+            Note::Watches(subject) => self.watch(now, observer, subject),
+            Note::Suspects { robot, heard, sequence } => {
+                let missed = self.log.missed(now, [observer, robot], sequence, waiting);
+                let subject_down = !self.health[robot.index()].sends;
+                let is_failure = subject_down || self.silent(robot, heard, now) * 2 > now.since(heard);
+                let suspicion = Suspicion {
+                    observer,
+                    subject: robot,
+                    at: now,
+                    heard,
+                    sequence,
+                    until: None,
+                    subject_down,
+                    cause: if is_failure { Cause::Failure } else { missed.cause() },
+                    missed,
+                    duration: None,
+                };
+                self.suspect(suspicion);
+            }
+            Note::Trusts(subject) => self.trust(now, observer, subject),
+            Note::Role(_) | Note::Target(_) | Note::Parents(_) => {}
+        }
+    }
+
+    fn watch(&mut self, now: SimTime, observer: ActorId, subject: ActorId) {
+        let mut pair = Pair {
+            subject,
+            since: None,
+            suspicion: None,
+            mistaken: false,
+            failure: None,
+        };
+        pair.resume(now, self.is_able(observer, subject));
+        self.pairs[observer.index()].push(pair);
+    }
+
+    fn suspect(&mut self, suspicion: Suspicion) {
+        let Suspicion {
+            observer, subject, at, ..
+        } = suspicion;
+        let able = self.is_able(observer, subject);
+        let pair = find(&mut self.pairs, observer, subject);
+        pair.settle(at, &mut self.tally);
+        pair.suspicion = Some(self.tally.suspicions.len());
+        pair.mistaken = suspicion.verdict() == Verdict::Mistake;
+        self.tally.suspicions.push(suspicion);
+        pair.resume(at, able);
+    }
+
+    fn trust(&mut self, now: SimTime, observer: ActorId, subject: ActorId) {
+        let able = self.is_able(observer, subject);
+        let pair = find(&mut self.pairs, observer, subject);
+        pair.settle(now, &mut self.tally);
+        if let Some(suspicion) = pair.suspicion.take() {
+            let suspicion = &mut self.tally.suspicions[suspicion];
+            suspicion.until = Some(now);
+            suspicion.duration = pair.mistaken.then(|| now.since(suspicion.at));
+        }
+        pair.mistaken = false;
+        pair.resume(now, able);
+    }
+
+    /// `robot` can do from `now` on what `health` says.
+    pub fn fault(&mut self, now: SimTime, robot: ActorId, health: Health) {
+        let before = std::mem::replace(&mut self.health[robot.index()], health);
+        if before.sends != health.sends {
+            let silences = &mut self.silences[robot.index()];
+            match silences.last_mut() {
+                Some(last) if health.sends => last.1 = now,
+                _ => silences.push((now, SimTime::NEVER)),
+            }
+            for observer in (0..self.pairs.len() as u32).map(ActorId) {
+                self.subject_changes(now, observer, robot);
+            }
+        }
+        if before.hears != health.hears {
+            self.observer_changes(now, robot);
+        }
+    }
+
+    /// `subject` fails to send, or sends again: to `observer` a mistake about it is one no longer.
+    fn subject_changes(&mut self, now: SimTime, observer: ActorId, subject: ActorId) {
+        let able = self.is_able(observer, subject);
+        let pairs = &mut self.pairs[observer.index()];
+        let Some(pair) = pairs.iter_mut().find(|pair| pair.subject == subject) else {
+            return;
+        };
+        let was_monitored = pair.since.is_some();
+        pair.settle(now, &mut self.tally);
+        pair.mistaken = false;
+        if self.health[subject.index()].sends {
+            pair.resolve(FailureOutcome::Recovered, &mut self.tally);
+        } else if was_monitored {
+            pair.failure = Some(self.tally.failures.len());
+            self.tally.failures.push(ObservedFailure {
+                subject,
+                observer,
+                at: now,
+                outcome: FailureOutcome::Undetected,
+            });
+        }
+        pair.resume(now, able);
+    }
+
+    /// `observer` fails to hear, or hears again: what it believed meanwhile is not its detector's merit or fault.
+    fn observer_changes(&mut self, now: SimTime, observer: ActorId) {
+        let hears = self.health[observer.index()].hears;
+        for pair in &mut self.pairs[observer.index()] {
+            pair.settle(now, &mut self.tally);
+            pair.mistaken = false;
+            if !hears {
+                pair.resolve(FailureOutcome::ObserverFailed, &mut self.tally);
+            }
+            pair.resume(now, hears && self.health[pair.subject.index()].sends);
+        }
+    }
+
+    /// Closes the books at `end`.
+    pub fn finish(mut self, end: SimTime) -> DetectionRecord {
+        for pair in self.pairs.iter_mut().flatten() {
+            pair.settle(end, &mut self.tally);
+            pair.resolve(FailureOutcome::Undetected, &mut self.tally);
+        }
+        DetectionRecord {
+            pairs: self.pairs.iter().map(|pairs| pairs.len() as u64).sum(),
+            monitored_s: self.tally.monitored_nanos as f64 / 1e9,
+            mistaken_s: self.tally.mistaken_nanos as f64 / 1e9,
+            suspicions: self.tally.suspicions,
+            failures: self.tally.failures,
+        }
+    }
+
+    fn is_able(&self, observer: ActorId, subject: ActorId) -> bool {
+        self.health[observer.index()].hears && self.health[subject.index()].sends
+    }
+
+    /// How long `robot` could not send within `from..to`.
+    fn silent(&self, robot: ActorId, from: SimTime, to: SimTime) -> Span {
+        let silences = self.silences[robot.index()].iter();
+        let overlaps = silences.map(|&(since, until)| until.min(to).since(since.max(from)));
+        overlaps.fold(Span::ZERO, |sum, overlap| sum + overlap)
+    }
+}
+
+/// The pair of `observer` and `subject`.
+fn find(pairs: &mut [Vec<Pair>], observer: ActorId, subject: ActorId) -> &mut Pair {
+    let mut watched = pairs[observer.index()].iter_mut();
+    let found = watched.find(|pair| pair.subject == subject);
+    found.unwrap_or_else(|| panic!("robot {observer} believes something of robot {subject}, which it does not watch"))
+}
+
+impl Pair {
+    /// Counts the stretch that ends at `now`.
+    fn settle(&mut self, now: SimTime, tally: &mut Tally) {
+        if let Some(since) = self.since.take() {
+            let nanos = u128::from(now.since(since).as_nanos());
+            tally.monitored_nanos += nanos;
+            tally.mistaken_nanos += if self.mistaken { nanos } else { 0 };
+        }
+    }
+
+    /// Begins a stretch at `now`, if both robots are `able` and the belief says something of the detector's quality.
+    fn resume(&mut self, now: SimTime, able: bool) {
+        let tells = self.suspicion.is_none() || self.mistaken;
+        self.since = (able && tells).then_some(now);
+    }
+
+    /// The failure ends: it was detected if the subject is suspected now, else the `outcome` is another.
+    fn resolve(&mut self, outcome: FailureOutcome, tally: &mut Tally) {
+        if let Some(failure) = self.failure.take() {
+            let failure = &mut tally.failures[failure];
+            failure.outcome = self.suspicion.map_or(outcome, |suspicion| {
+                FailureOutcome::Detected(tally.suspicions[suspicion].at.since(failure.at))
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OBSERVER: ActorId = ActorId(0);
+    const SUBJECT: ActorId = ActorId(1);
+    const MUTE: Health = Health {
+        sends: false,
+        ..Health::WELL
+    };
+    const DEAF: Health = Health {
+        hears: false,
+        ..Health::WELL
+    };
+
+    fn at(seconds: f64) -> SimTime {
+        SimTime::from_secs(seconds)
+    }
+
+    /// One observer that has watched one subject since 1 s, and statuses number 0, 1, … of it at 0, 1, … s.
+    struct Bench(Scorer);
+
+    impl Bench {
+        fn new() -> Self {
+            let mut scorer = Scorer::new(2, Span::from_secs(1000.0));
+            (0..30).for_each(|second| scorer.sent(at(f64::from(second)), SUBJECT, second));
+            let mut bench = Self(scorer);
+            bench.believe(1.0, &Note::Watches(SUBJECT));
+            bench
+        }
+
+        fn believe(&mut self, seconds: f64, note: &Note) {
+            self.0.belief(at(seconds), OBSERVER, note, &[] as &[Reception<()>]);
+        }
+
+        /// A suspicion, the last status heard being number `heard` at its own second.
+        fn suspect(&mut self, seconds: f64, heard: u32) {
+            self.believe(
+                seconds,
+                &Note::Suspects {
+                    robot: SUBJECT,
+                    heard: at(f64::from(heard)),
+                    sequence: heard,
+                },
+            );
+        }
+
+        fn trust(&mut self, seconds: f64) {
+            self.believe(seconds, &Note::Trusts(SUBJECT));
+        }
+
+        /// The channel loses statuses `lost`.
+        fn lose(&mut self, lost: std::ops::Range<u32>) {
+            lost.for_each(|status| self.0.lost(OBSERVER, SUBJECT, status, LossCause::Channel));
+        }
+
+        fn outcomes(self) -> (DetectionRecord, Vec<FailureOutcome>) {
+            let record = self.0.finish(at(30.0));
+            let outcomes = record.failures.iter().map(|failure| failure.outcome).collect();
+            (record, outcomes)
+        }
+    }
+
+    fn assert_time(record: &DetectionRecord, monitored: f64, mistaken: f64) {
+        assert!(
+            (record.monitored_s - monitored).abs() < 1e-9,
+            "monitored {} s",
+            record.monitored_s
+        );
+        assert!(
+            (record.mistaken_s - mistaken).abs() < 1e-9,
+            "mistaken {} s",
+            record.mistaken_s
+        );
+    }
+
+    #[test]
+    fn a_mistake_counts_as_monitored_time_and_lasts_until_trust() {
+        let mut bench = Bench::new();
+        bench.lose(4..6);
+        bench.suspect(5.5, 3);
+        bench.trust(6.0);
+        let (record, _) = bench.outcomes();
+        assert_time(&record, 29.0, 0.5);
+        let suspicion = &record.suspicions[0];
+        assert_eq!(
+            (suspicion.verdict(), suspicion.cause),
+            (Verdict::Mistake, Cause::Lost(LossCause::Channel))
+        );
+        assert_eq!(
+            (suspicion.duration, suspicion.until),
+            (Some(Span::from_secs(0.5)), Some(at(6.0)))
+        );
+    }
+
+    #[test]
+    fn a_robot_out_of_range_is_not_mistaken_for_a_failed_one_and_not_monitored_until_it_is_back() {
+        let mut bench = Bench::new();
+        bench.suspect(10.0, 6);
+        bench.trust(20.0);
+        let (record, _) = bench.outcomes();
+        assert_eq!(record.suspicions[0].verdict(), Verdict::OutOfRange);
+        assert_eq!(
+            (record.suspicions[0].missed.out_of_range, record.suspicions[0].duration),
+            (3, None)
+        );
+        assert_time(&record, 9.0 + 10.0, 0.0);
+    }
+
+    #[test]
+    fn a_failure_is_detected_at_the_suspicion_that_stays() {
+        let mut bench = Bench::new();
+        bench.0.fault(at(10.0), SUBJECT, MUTE);
+        bench.suspect(12.0, 9);
+        bench.trust(12.5);
+        bench.suspect(15.0, 9);
+        bench.0.fault(at(20.0), SUBJECT, Health::WELL);
+        bench.trust(21.0);
+        let (record, outcomes) = bench.outcomes();
+        assert_eq!(outcomes, [FailureOutcome::Detected(Span::from_secs(5.0))]);
+        assert!(
+            record
+                .suspicions
+                .iter()
+                .all(|suspicion| suspicion.verdict() == Verdict::Right)
+        );
+        assert_time(&record, 9.0 + 9.0, 0.0);
+    }
+
+    #[test]
+    fn a_mistake_that_comes_true_is_a_detection_without_delay_and_has_no_duration() {
+        let mut bench = Bench::new();
+        bench.lose(7..10);
+        bench.suspect(9.5, 6);
+        bench.0.fault(at(10.0), SUBJECT, MUTE);
+        let (record, outcomes) = bench.outcomes();
+        assert_eq!(outcomes, [FailureOutcome::Detected(Span::ZERO)]);
+        assert_eq!(record.suspicions[0].duration, None);
+        assert_time(&record, 9.0, 0.5);
+    }
+
+    #[test]
+    fn failures_end_undetected_when_the_robot_the_observer_or_the_run_is_quicker() {
+        let mut recovered = Bench::new();
+        recovered.0.fault(at(10.0), SUBJECT, MUTE);
+        recovered.0.fault(at(11.0), SUBJECT, Health::WELL);
+        assert_eq!(recovered.outcomes().1, [FailureOutcome::Recovered]);
+
+        let mut deaf = Bench::new();
+        deaf.0.fault(at(10.0), SUBJECT, MUTE);
+        deaf.0.fault(at(11.0), OBSERVER, DEAF);
+        deaf.suspect(13.0, 9);
+        assert_eq!(deaf.outcomes().1, [FailureOutcome::ObserverFailed]);
+
+        let mut late = Bench::new();
+        late.0.fault(at(29.0), SUBJECT, MUTE);
+        assert_eq!(late.outcomes().1, [FailureOutcome::Undetected]);
+    }
+
+    #[test]
+    fn a_suspicion_after_a_failure_that_filled_most_of_the_silence_is_due_to_it() {
+        let mut bench = Bench::new();
+        bench.0.fault(at(4.0), SUBJECT, MUTE);
+        bench.0.fault(at(7.5), SUBJECT, Health::WELL);
+        bench.suspect(8.0, 3);
+        let suspicion = &bench.outcomes().0.suspicions[0];
+        assert_eq!(
+            (suspicion.verdict(), suspicion.cause),
+            (Verdict::Mistake, Cause::Failure)
+        );
+    }
+}

@@ -1,0 +1,224 @@
+//! Why a robot was suspected: what is told is what happened.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use desim::engine::ActorId;
+use desim::radio::LossCause;
+use desim::report::{Explanation, Fate};
+use desim::scenario::{Scenario, parse};
+use desim::simulation::trace_trial;
+use tempfile::tempdir;
+use tokio_util::sync::CancellationToken;
+
+const ROBOTS: u32 = 6;
+
+/// Robots that stand in range of each other, loss and failures of every kind as `more` has it.
+fn scenario(more: &str) -> Scenario {
+    let text = text(more);
+    parse("still.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn text(more: &str) -> String {
+    format!(
+        "Scenario(name: \"still\", time_limit: 20.0, swarm: (robots: {ROBOTS}, deploy: Cluster(radius: 0.5)), \
+         protocol: Heartbeat, detector: Timeout(0.35), {more})"
+    )
+}
+
+fn traced(scenario: &Scenario, robot: u32) -> (desim::metrics::TrialRecord, Explanation) {
+    let record =
+        trace_trial(scenario, 0, ActorId(robot), &CancellationToken::new()).expect("the trial reaches its end");
+    let explanation = Explanation::of(&scenario.name, &record).expect("the robot was traced");
+    (record, explanation)
+}
+
+const LOSSY: &str = "radio: (loss: Bernoulli(0.5), latency: Constant(0.03)), faults: [
+    Deaf(robots: [1], at: 3.0, lasts: For(1.0)), Burst(links: Of([2]), loss: 0.9, during: Between(5.0, 7.0))]";
+
+#[test]
+fn what_is_told_of_each_robot_adds_up_to_the_table_and_to_the_ledger() {
+    let scenario = scenario(LOSSY);
+    let mut lost_in_all = [0; LossCause::ALL.len()];
+    let mut told_in_all = 0;
+    for robot in 0..ROBOTS {
+        let (record, explanation) = traced(&scenario, robot);
+        let mut told: BTreeMap<&str, u32> = BTreeMap::new();
+        for status in explanation.suspicions.iter().flat_map(|suspicion| &suspicion.statuses) {
+            let name = match status.fate {
+                Fate::Lost { cause } => cause,
+                Fate::OutOfRange => "out_of_range",
+                Fate::UnderWay { .. } => "under_way",
+                Fate::Arrived { .. } => panic!("a status that arrived was not missed: {status:?}"),
+            };
+            *told.entry(name).or_default() += 1;
+        }
+        let mut counted: BTreeMap<&str, u32> = BTreeMap::new();
+        let suspicions = record.detection.suspicions.iter();
+        for suspicion in suspicions.filter(|suspicion| suspicion.subject == ActorId(robot)) {
+            let missed = &suspicion.missed;
+            let lost = LossCause::ALL.map(LossCause::name).into_iter().zip(missed.lost);
+            for (name, number) in lost.chain([("out_of_range", missed.out_of_range), ("under_way", missed.under_way)]) {
+                *counted.entry(name).or_default() += number;
+            }
+        }
+        counted.retain(|_, number| *number > 0);
+        assert_eq!(told, counted, "robot {robot}");
+        told_in_all += told.values().sum::<u32>();
+
+        let copies = record
+            .trace
+            .iter()
+            .flat_map(|trace| &trace.statuses)
+            .flat_map(|status| &status.copies);
+        for copy in copies {
+            if let desim::metrics::detection::CopyFate::Lost(cause) = copy.fate {
+                lost_in_all[cause as usize] += 1;
+            }
+        }
+        if robot == ROBOTS - 1 {
+            assert_eq!(lost_in_all, record.ledger[0].lost, "every lost status was followed");
+        }
+    }
+    assert!(
+        told_in_all > 1000 && lost_in_all.iter().all(|lost| *lost > 0),
+        "{lost_in_all:?}"
+    );
+}
+
+#[test]
+fn whoever_is_followed_the_run_is_the_same() {
+    let scenario = scenario(LOSSY);
+    let digests: Vec<_> = (0..3).map(|robot| traced(&scenario, robot).0.digest).collect();
+    assert!(digests.iter().all(|digest| *digest == digests[0]));
+}
+
+/// Statuses at every tenth of a second take a tenth to arrive: the last one of a robot that is mute from 1 s to 2 s is heard
+/// at 1 s, and the next one at 2.1 s.
+#[test]
+fn a_robot_that_was_mute_is_explained_by_that() {
+    let (_, explanation) = traced(&scenario("faults: [Mute(robots: [0], at: 1.0, lasts: For(1.0))]"), 0);
+    let outage = &explanation.outages[0];
+    assert_eq!((outage.effect, outage.from_s, outage.until_s), ("mute", 1.0, Some(2.0)));
+    assert_eq!(explanation.suspicions.len(), ROBOTS as usize - 1);
+    for suspicion in &explanation.suspicions {
+        assert_eq!(
+            (suspicion.heard_s, suspicion.suspected_s, suspicion.trusted_s),
+            (1.0, 1.35, Some(2.1))
+        );
+        assert_eq!((suspicion.verdict, suspicion.cause), ("right", "failure"));
+        assert!(suspicion.statuses.is_empty());
+        let restoring = suspicion
+            .restored_by
+            .as_ref()
+            .map(|status| (status.sent_s, status.fate));
+        let arrived = Fate::Arrived {
+            arrived_s: 2.1,
+            read_s: Some(2.1),
+        };
+        assert_eq!(restoring, Some((2.0, arrived)));
+    }
+    insta::assert_snapshot!(explanation.text(Some(2)));
+}
+
+/// Nothing of robot 0 passes from 1 s on: 1.0, 1.1, 1.2 and 1.3 s are lost when it is suspected at 1.35 s.
+#[test]
+fn a_burst_on_a_link_is_told_status_by_status() {
+    let burst = "faults: [Burst(links: Of([0]), loss: 1.0, during: Between(1.0, 1.55))]";
+    let (_, explanation) = traced(&scenario(burst), 0);
+    let sent: Vec<f64> = explanation.suspicions[0]
+        .statuses
+        .iter()
+        .map(|status| status.sent_s)
+        .collect();
+    assert_eq!(sent, [1.0, 1.1, 1.2, 1.3]);
+    let cause = LossCause::LinkFault.name();
+    let lost = |status: &desim::report::Status| status.fate == Fate::Lost { cause };
+    assert!(
+        explanation
+            .suspicions
+            .iter()
+            .all(|suspicion| suspicion.statuses.iter().all(lost))
+    );
+    assert_eq!(explanation.suspicions[0].verdict, "mistake");
+    insta::assert_snapshot!(explanation.text(None));
+}
+
+#[test]
+fn no_line_is_wider_than_80_columns() {
+    let (_, explanation) = traced(&scenario(LOSSY), 1);
+    let widest = |text: &str| text.lines().map(|line| line.chars().count()).max();
+    assert!(widest(&explanation.text(None)) <= Some(80));
+    for number in 1..explanation.suspicions.len() {
+        assert!(widest(&explanation.text(Some(number))) <= Some(80));
+    }
+}
+
+fn desim(dir: &Path, arguments: &[&str]) -> assert_cmd::assert::Assert {
+    Command::cargo_bin("desim")
+        .unwrap()
+        .current_dir(dir)
+        .args(arguments)
+        .assert()
+}
+
+#[test]
+fn the_command_explains_finished_results_and_refuses_all_others() {
+    let dir = tempdir().unwrap();
+    let more = "faults: [Mute(robots: [0], at: 1.0, lasts: For(1.0))]";
+    fs::write(dir.path().join("still.ron"), text(more)).unwrap();
+    desim(dir.path(), &["scenario", "still.ron", "--quiet", "--out", "there"]).success();
+    let explain = |trial: &str, robot: &str, more: &[&str]| {
+        let arguments = ["explain", "there", "--trial", trial, "--robot", robot];
+        desim(dir.path(), &[&arguments, more].concat())
+    };
+    let output = |assert: &assert_cmd::assert::Assert| String::from_utf8(assert.get_output().stdout.clone()).unwrap();
+    let error = |assert: &assert_cmd::assert::Assert| String::from_utf8(assert.get_output().stderr.clone()).unwrap();
+
+    let told = explain("0", "0", &[]).success();
+    assert_eq!(output(&told), traced(&scenario(more), 0).1.text(None));
+    let json = explain("0", "0", &["--suspicion", "2", "--format", "json"]).success();
+    let json: serde_json::Value = serde_json::from_str(&output(&json)).unwrap();
+    assert_eq!((&json["number"], &json["cause"]), (&2.into(), &"failure".into()));
+    let never = explain("0", "3", &[]).success();
+    assert_eq!(output(&never), "Robot 3 was never suspected in trial 0 of still.\n");
+
+    for (refused, says) in [
+        (explain("4", "0", &[]), "there is no trial 4"),
+        (
+            explain("0", "6", &[]),
+            "there is no robot 6: the scenario has robots 0 to 5",
+        ),
+        (
+            explain("0", "0", &["--suspicion", "6"]),
+            "there is no suspicion 6: robot 0 was suspected 5 times",
+        ),
+        (
+            desim(dir.path(), &["explain", "none", "--trial", "0", "--robot", "0"]),
+            "there is no folder none",
+        ),
+        (
+            desim(dir.path(), &["explain", ".", "--trial", "0", "--robot", "0"]),
+            ". holds no results of desim",
+        ),
+    ] {
+        let refused = refused.code(2);
+        assert!(error(&refused).contains(says), "{}", error(&refused));
+    }
+}
+
+#[test]
+fn results_of_a_run_that_this_version_runs_otherwise_are_not_explained() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("still.ron"), text("seed: 3")).unwrap();
+    desim(dir.path(), &["scenario", "still.ron", "--quiet", "--out", "there"]).success();
+    let path = dir.path().join("there/manifest.json");
+    let mut manifest: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    manifest["trials"][0]["digest"] = "0".repeat(32).into();
+    fs::write(&path, manifest.to_string()).unwrap();
+    let refused = desim(dir.path(), &["explain", "there", "--trial", "0", "--robot", "0"]).code(2);
+    let error = String::from_utf8(refused.get_output().stderr.clone()).unwrap();
+    assert!(error.contains("does not run trial 0 as the results have it"), "{error}");
+}
