@@ -28,24 +28,25 @@ struct Wound {
 }
 
 /// How a target stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Standing {
+    /// Its chains, at most as many as it needs.
     links: u32,
-    held: bool,
+    /// How far its nearest live worker is, metres; infinite without one.
+    worker: f64,
 }
 
 impl Standing {
     fn of(target: u16, mission: &Mission, scene: Scene) -> Self {
         let target = usize::from(target);
-        let links = mission.links_of(target, scene).min(mission.targets[target].links);
         Self {
-            links,
-            held: mission.is_held(target, scene),
+            links: mission.links_of(target, scene).min(mission.targets[target].links),
+            worker: mission.nearest_worker(target, scene),
         }
     }
 
     fn meets(self, wanted: Self) -> bool {
-        self.links >= wanted.links && (self.held || !wanted.held)
+        self.links >= wanted.links && self.worker <= wanted.worker
     }
 }
 
@@ -55,6 +56,8 @@ pub(super) struct Blow {
     robot: ActorId,
     target: u16,
     before: Standing,
+    /// What it takes to be as well off as before.
+    wanted: Standing,
 }
 
 impl Healing {
@@ -80,18 +83,32 @@ impl Healing {
         };
         let strikes = change.begins && !health.is_live() && scene.failures.is_live(robot);
         let target = scene.reports.targets[robot.index()].filter(|_| strikes)?;
+        let before = Standing::of(target, mission, scene);
+        // A worker's place is its progress. Where it is on its way, and a relay of its fails, only the links count.
+        let is_worker = scene.reports.roles[robot.index()] == mission.worker_role;
+        let worker = if is_worker || before.worker <= mission.reach {
+            before.worker.max(mission.reach)
+        } else {
+            f64::INFINITY
+        };
         Some(Blow {
             robot,
             target,
-            before: Standing::of(target, mission, scene),
+            before,
+            wanted: Standing { worker, ..before },
         })
     }
 
     /// The blow has fallen, as fault number `fault`.
     pub(super) fn strike(&mut self, now: SimTime, fault: u16, blow: &Blow, mission: &Mission, scene: Scene) {
-        let Blow { robot, target, before } = *blow;
+        let Blow {
+            robot,
+            target,
+            before,
+            wanted,
+        } = *blow;
         let after = Standing::of(target, mission, scene);
-        let harmed = !after.meets(before);
+        let harmed = !after.meets(wanted);
         let episode = self.episodes.len();
         let mut overlapping = 0;
         if harmed {
@@ -104,7 +121,7 @@ impl Healing {
             }
             self.open.push(Wound {
                 episode,
-                wanted: before,
+                wanted,
                 last: scene.positions.to_vec(),
             });
         }
@@ -116,7 +133,7 @@ impl Healing {
             failed_at: now,
             links_before: before.links,
             links_after: after.links,
-            held_before: before.held,
+            worker_m: before.worker.is_finite().then_some(before.worker),
             healed_at: (!harmed).then_some(now),
             overlapping,
             distance_m: 0.0,
@@ -297,9 +314,35 @@ mod tests {
             .note(ActorId(4), &Note::Parents(vec![ActorId(1), ActorId(2)]));
         stage.observe(11);
         assert!(stage.healing.is_open(), "it is linked, and not there yet");
+        assert_eq!(stage.healing.episodes[0].worker_m, Some(0.0));
         stage.positions[4] = Vec2::new(2.9, 0.1);
         stage.observe(12);
         assert_eq!(stage.healing.episodes[0].healed_at, Some(SimTime::from_secs(12.0)));
+    }
+
+    #[test]
+    fn on_the_way_a_relay_need_not_wait_for_the_worker_and_another_worker_must_come_as_far() {
+        let mut stage = Stage::new();
+        stage.positions[3].x = 2.5;
+        stage.silence(10, 1, true);
+        stage.positions[3].x = 1.0;
+        stage.silence(11, 1, false);
+        stage.observe(11);
+        assert!(!stage.healing.is_open(), "both links are there again");
+        stage.silence(12, 3, true);
+        stage.reports.note(ActorId(4), &Note::Role(WORKER));
+        stage.reports.note(ActorId(4), &Note::Target(Some(0)));
+        stage
+            .reports
+            .note(ActorId(4), &Note::Parents(vec![ActorId(1), ActorId(2)]));
+        stage.observe(13);
+        assert!(
+            stage.healing.is_open(),
+            "its place was 2 m from the target, the other is at 2.5 m"
+        );
+        stage.positions[4] = Vec2::new(1.1, 0.0);
+        stage.observe(14);
+        assert!(!stage.healing.is_open());
     }
 
     #[test]

@@ -103,10 +103,13 @@ impl Mission {
         workers.map(|robot| chains.count(robot)).max().unwrap_or(0)
     }
 
-    /// Whether a live worker of target number `target` is at it.
-    pub(super) fn is_held(&self, target: usize, scene: Scene) -> bool {
-        let mut workers = self.workers_at(target, scene);
-        workers.any(|robot| scene.failures.is_live(robot))
+    /// How far the nearest live worker of target number `target` is from it, metres; infinite without one.
+    pub(super) fn nearest_worker(&self, target: usize, scene: Scene) -> f64 {
+        let place = self.targets[target].position;
+        let workers = scene.reports.working_for(target, self.worker_role);
+        let live = workers.filter(|robot| scene.failures.is_live(*robot));
+        let distances = live.map(|robot| (scene.positions[robot.index()] - place).norm());
+        distances.fold(f64::INFINITY, f64::min)
     }
 
     /// Whether every target is held with its links. The flow through the parent relation is computed only when
@@ -129,17 +132,13 @@ impl Mission {
 
     /// The workers of target number `target` that are at it and have enough parents near.
     fn holders(&self, target: usize, scene: Scene) -> Vec<ActorId> {
-        let links = self.targets[target].links as usize;
-        self.workers_at(target, scene)
-            .filter(|&robot| self.near_parents(robot, scene) >= links) // None if it has failed.
+        let MissionTarget { position, links } = self.targets[target];
+        scene
+            .reports
+            .working_for(target, self.worker_role)
+            .filter(|robot| (scene.positions[robot.index()] - position).norm() <= self.reach)
+            .filter(|&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
             .collect()
-    }
-
-    /// The workers of target number `target` that are at it.
-    fn workers_at(&self, target: usize, scene: Scene) -> impl Iterator<Item = ActorId> {
-        let (place, reach) = (self.targets[target].position, self.reach);
-        let workers = scene.reports.working_for(target, self.worker_role);
-        workers.filter(move |robot| (scene.positions[robot.index()] - place).norm() <= reach)
     }
 
     /// Distinct live parents of `robot`, live itself, within d_c of it.

@@ -113,8 +113,9 @@ pub struct FaultEpisode {
     pub until: Option<SimTime>,
 }
 
-/// A failure of a robot that worked for a target, until the target is again as it was just before: with as many
-/// vertex-disjoint chains as then (or as it needs, if it had more), and with a worker at it if there was one.
+/// A failure of a robot that worked for a target, until the target has its links again: as many vertex-disjoint chains as
+/// just before, or as it needs, if it had more. If its worker failed, or one was at the target, a live worker must also be as
+/// near to the target as then, or at it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HealingEpisode {
     /// The fault's place in the scenario's list, from 0.
@@ -131,9 +132,9 @@ pub struct HealingEpisode {
     pub links_before: u32,
     /// Chains of the target just after, at most as many as it needs.
     pub links_after: u32,
-    /// Whether a worker was at the target just before.
-    pub held_before: bool,
-    /// The first control step at which the target was as before; the time of the failure if it did no harm, `None` if the
+    /// How far the nearest live worker was from the target just before, metres; `None` without one.
+    pub worker_m: Option<f64>,
+    /// The first control step at which the target had its links again; the time of the failure if it did no harm, `None` if the
     /// trial ended first.
     pub healed_at: Option<SimTime>,
     /// Other failures whose harm to the same target was unmended at some time meanwhile.

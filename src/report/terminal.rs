@@ -113,12 +113,12 @@ fn failures(page: &mut Page, summary: &Summary) {
     let roles = if roles.is_empty() {
         String::new()
     } else {
-        format!("; failures by role: {}", roles.join(", "))
+        format!("; in all trials: {}", roles.join(", "))
     };
     let robots = estimate(&faults.robots.estimate, figure);
-    page.entry("robots", &format!("{robots} failed on average{roles}"));
+    page.entry("robots", &format!("{robots} failed in a trial{roles}"));
     if faults.links > 0 {
-        page.entry("links", &format!("{} failures", count(faults.links)));
+        page.entry("links", &format!("{} faults in all trials", count(faults.links)));
     }
     if let Some(healing) = &summary.healing {
         healed(page, healing);
@@ -128,7 +128,7 @@ fn failures(page: &mut Page, summary: &Summary) {
 fn healed(page: &mut Page, healing: &HealingSummary) {
     let total = &healing.total;
     let harm = format!(
-        "{} failures cost a target a link or its worker, {} cost it nothing",
+        "a target lost a link or its worker by {} failures, nothing by {}",
         count(total.failures),
         count(healing.harmless)
     );

@@ -171,7 +171,7 @@ fn healing(trial: u32) -> Vec<HealingEpisode> {
         failed_at: SimTime::from_secs(at),
         links_before: 1,
         links_after: u32::from(healed == Some(at)),
-        held_before: true,
+        worker_m: (trial != 2).then_some(0.125),
         healed_at: healed.map(SimTime::from_secs),
         overlapping: trial % 3,
         distance_m: f64::from(trial) / 7.0,

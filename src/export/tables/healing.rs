@@ -5,7 +5,7 @@ use super::super::table::Column;
 use crate::engine::SimTime;
 use crate::metrics::{HealingEpisode, TrialRecord};
 
-/// A failure, until the target is as it was.
+/// A failure, until the target has its links again.
 pub struct Row {
     trial: u32,
     role: &'static str,
@@ -15,7 +15,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Until the target was as before, or until the trial ended.
+    /// Until the target had its links again, or until the trial ended.
     fn watched_s(&self) -> f64 {
         let until = self.episode.healed_at.unwrap_or(self.end);
         until.since(self.episode.failed_at).as_secs()
@@ -44,7 +44,7 @@ pub fn columns(names: &Names) -> Vec<Column<Row>> {
         Col::f64("failed_s", |row| row.episode.failed_at.as_secs()),
         Col::id("links_before", |row| row.episode.links_before),
         Col::id("links_after", |row| row.episode.links_after),
-        Col::id("held_before", |row| row.episode.held_before.into()),
+        Col::optional_f64("worker_m", |row| row.episode.worker_m),
         Col::optional_f64("healed_s", |row| row.episode.healed_at.map(SimTime::as_secs)),
         Col::f64("watched_s", Row::watched_s),
         Col::id("overlapping", |row| row.episode.overlapping),
