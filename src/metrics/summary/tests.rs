@@ -178,6 +178,7 @@ fn keys_are_stable_and_in_a_stable_order() {
         "lambda2_min",
         "connected_share",
         "robots_used",
+        "detection",
         "steps",
         "simulated_s",
     ];
