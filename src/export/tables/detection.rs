@@ -64,9 +64,7 @@ pub fn columns() -> Vec<Column<Row>> {
         }),
         Col::optional_f64("heard_s", |row| row.suspicion().map(|event| event.heard.as_secs())),
         Col::optional_f64("trusted_s", |row| row.suspicion()?.until.map(SimTime::as_secs)),
-        Col::optional_f64("mistake_duration_s", |row| {
-            row.suspicion()?.duration.map(Span::as_secs)
-        }),
+        Col::optional_f64("mistake_duration_s", |row| row.suspicion()?.duration.map(Span::as_secs)),
         Col::optional_f64("detection_time_s", |row| match &row.event {
             Event::Failure(ObservedFailure {
                 outcome: FailureOutcome::Detected(after),
