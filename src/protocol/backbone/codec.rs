@@ -3,10 +3,12 @@
 //! | message | bytes |
 //! |---|---|
 //! | status | role, previous role, parent need, target chain |
-//! | join | kind, to, sequence, chain |
+//! | join, adopt | kind, to, sequence, chain |
+//! | work | kind, to, sequence, target |
+//! | replace | kind, to, child, sequence, chain, number of robots beyond |
 //! | accept, refuse | kind, to, sequence |
 //! | release | kind, to |
-//! | order | kind, epoch, target + 1 or 0 for all |
+//! | order | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
 //! | strand | kind, chain, next, number of robots, robots |
 //!
 //! The first byte tells messages apart: 0 to 3 is a status, which begins with its role. A robot's id is one byte if all
@@ -18,13 +20,16 @@ use tokio_util::codec::{Decoder, Encoder};
 use crate::engine::ActorId;
 use crate::protocol::CodecError;
 
-use super::message::{Message, Order, Request, Role, Status, Strand};
+use super::message::{Message, Order, Request, Role, Status, Strand, TargetSet};
 
 const JOIN: u8 = 0x10;
 const ACCEPT: u8 = 0x11;
 const REFUSE: u8 = 0x12;
 const RELEASE: u8 = 0x13;
 const ORDER: u8 = 0x14;
+const ADOPT: u8 = 0x15;
+const WORK: u8 = 0x16;
+const REPLACE: u8 = 0x17;
 const PARENT_STRAND: u8 = 0x20;
 const CHILD_STRAND: u8 = 0x21;
 const WIDE_IDS: u8 = 0x80;
@@ -62,6 +67,27 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
             put_addressed(JOIN, to, bytes);
             bytes.put_slice(&[sequence, chain]);
         }
+        Request::Adopt { to, sequence, chain } => {
+            put_addressed(ADOPT, to, bytes);
+            bytes.put_slice(&[sequence, chain]);
+        }
+        Request::Work { to, sequence, target } => {
+            put_addressed(WORK, to, bytes);
+            bytes.put_slice(&[sequence, target]);
+        }
+        Request::Replace {
+            to,
+            sequence,
+            chain,
+            child,
+            beyond,
+        } => {
+            let wide = is_wide(to) || is_wide(child);
+            bytes.put_u8(if wide { REPLACE | WIDE_IDS } else { REPLACE });
+            put_id(to, wide, bytes);
+            put_id(child, wide, bytes);
+            bytes.put_slice(&[sequence, chain, beyond]);
+        }
         Request::Accept { to, sequence } => {
             put_addressed(ACCEPT, to, bytes);
             bytes.put_u8(sequence);
@@ -71,7 +97,11 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
             bytes.put_u8(sequence);
         }
         Request::Release { to } => put_addressed(RELEASE, to, bytes),
-        Request::Order(order) => bytes.put_slice(&[ORDER, order.epoch, order.only.map_or(0, |target| target + 1)]),
+        Request::Order(order) => {
+            let dismantled = order.dismantled.bytes();
+            bytes.put_slice(&[ORDER, order.epoch, dismantled.len() as u8]);
+            bytes.put_slice(dismantled);
+        }
     }
 }
 
@@ -125,6 +155,23 @@ impl Decoder for BackboneCodec {
                 sequence: reader.byte()?,
                 chain: reader.byte()?,
             }),
+            ADOPT => Message::Request(Request::Adopt {
+                to: reader.id(wide)?,
+                sequence: reader.byte()?,
+                chain: reader.byte()?,
+            }),
+            WORK => Message::Request(Request::Work {
+                to: reader.id(wide)?,
+                sequence: reader.byte()?,
+                target: reader.byte()?,
+            }),
+            REPLACE => Message::Request(Request::Replace {
+                to: reader.id(wide)?,
+                child: reader.id(wide)?,
+                sequence: reader.byte()?,
+                chain: reader.byte()?,
+                beyond: reader.byte()?,
+            }),
             ACCEPT => Message::Request(Request::Accept {
                 to: reader.id(wide)?,
                 sequence: reader.byte()?,
@@ -136,7 +183,7 @@ impl Decoder for BackboneCodec {
             RELEASE => Message::Request(Request::Release { to: reader.id(wide)? }),
             ORDER => Message::Request(Request::Order(Order {
                 epoch: reader.byte()?,
-                only: reader.byte()?.checked_sub(1),
+                dismantled: reader.targets()?,
             })),
             PARENT_STRAND => Message::ParentStrand(reader.strand(wide)?),
             CHILD_STRAND => Message::ChildStrand(reader.strand(wide)?),
@@ -192,6 +239,20 @@ impl Reader<'_> {
         }))
     }
 
+    fn targets(&mut self) -> Result<TargetSet, CodecError> {
+        let length = self.byte()?;
+        let too_many = CodecError::Unknown {
+            field: "number of target bytes",
+            value: length,
+        };
+        let mut bytes = [0; TargetSet::BYTES];
+        let bytes = bytes.get_mut(..length.into()).ok_or(too_many)?;
+        for byte in &mut *bytes {
+            *byte = self.byte()?;
+        }
+        Ok(TargetSet::from_bytes(bytes).unwrap_or_default())
+    }
+
     fn strand(&mut self, wide: bool) -> Result<Strand, CodecError> {
         let chain = self.byte()?;
         let next = self.id(wide)?;
@@ -241,10 +302,23 @@ mod tests {
         });
         let request = prop_oneof![
             (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, chain)| Request::Join { to, sequence, chain }),
+            (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, chain)| Request::Adopt { to, sequence, chain }),
+            (id(), any::<u8>(), any::<u8>()).prop_map(|(to, sequence, target)| Request::Work { to, sequence, target }),
+            (id(), id(), any::<[u8; 3]>()).prop_map(|(to, child, [sequence, chain, beyond])| Request::Replace {
+                to,
+                sequence,
+                chain,
+                child,
+                beyond,
+            }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
             id().prop_map(|to| Request::Release { to }),
-            (any::<u8>(), prop::option::of(0_u8..255)).prop_map(|(epoch, only)| Request::Order(Order { epoch, only })),
+            (any::<u8>(), prop::collection::vec(0_u8..255, 0..4)).prop_map(|(epoch, targets)| {
+                let mut dismantled = TargetSet::default();
+                targets.into_iter().for_each(|target| dismantled.insert(target));
+                Request::Order(Order { epoch, dismantled })
+            }),
         ];
         prop_oneof![
             status,

@@ -44,6 +44,9 @@ pub struct BackboneConfig {
     /// Settings of recruiting that the paper leaves open.
     #[serde(default)]
     pub recruiting: RecruitingConfig,
+    /// Settings of healing that the paper leaves open.
+    #[serde(default)]
+    pub healing: HealingConfig,
     /// Settings of the root that the paper leaves open.
     #[serde(default)]
     pub shortage: ShortageConfig,
@@ -126,6 +129,23 @@ impl Default for RecruitingConfig {
             patience: Positive::new(2.0),
             refusal_memory: NonNegative::new(10.0),
             join_timeout: Positive::new(4.0),
+        }
+    }
+}
+
+/// Settings of healing that the paper leaves open.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct HealingConfig {
+    /// Seconds for which a robot that has lost its child, and the root that hears nothing of a target, wait for those
+    /// beyond the break: as long as these may need to come to it.
+    pub patience: Positive,
+}
+
+impl Default for HealingConfig {
+    fn default() -> Self {
+        Self {
+            patience: Positive::new(60.0),
         }
     }
 }

@@ -14,6 +14,16 @@ pub fn spring(other: Vec2, rest: f64, gain: f64, push_limit: f64) -> Vec2 {
     other * ((gain * (distance - rest)).max(-push_limit) / distance)
 }
 
+/// Towards the other robot as a spring of length `limit` pulls beyond it, and nothing below.
+#[must_use]
+pub fn stay_within(other: Vec2, limit: f64, gain: f64) -> Vec2 {
+    if other.norm() > limit {
+        spring(other, limit, gain, 0.0)
+    } else {
+        Vec2::zeros()
+    }
+}
+
 /// The gate f (paper eq. 13 and 16), which takes a robot's other intentions away when its chain is stretched: 1 up to
 /// `opening`, 0 from `closing` on, falling evenly between, so that robots come to rest there and do not chatter.
 #[must_use]

@@ -16,11 +16,7 @@ pub fn velocity(view: &View<'_>) -> Vec2 {
     let parameters = view.parameters();
     let root = view.way_to_root();
     // Beyond the safe distance the cluster is out of the potential's reach: a spring brings the robot back (ours).
-    let back = if root.norm() > parameters.safe {
-        forces::spring(root, parameters.safe, parameters.spring_gain, 0.0)
-    } else {
-        Vec2::zeros()
-    };
+    let back = forces::stay_within(root, parameters.safe, parameters.spring_gain);
     let desired = forces::lennard_jones(root, parameters.lj_gain, parameters.lj_delta) + back + among_neighbours(view);
     desired
         + forces::obstacle(

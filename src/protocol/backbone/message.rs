@@ -67,6 +67,39 @@ pub enum Request {
         /// The chain to join.
         chain: u8,
     },
+    /// Asks a networker of the sender's chain that has lost its child to become the sender's parent: the two bridge a
+    /// failed robot.
+    Adopt {
+        /// The robot asked.
+        to: ActorId,
+        /// Number of this request among the sender's; repetitions have the same.
+        sequence: u8,
+        /// The chain of both.
+        chain: u8,
+    },
+    /// The root asks a free robot to become the worker of a target that has none left.
+    Work {
+        /// The robot asked.
+        to: ActorId,
+        /// Number of this request among the sender's; repetitions have the same.
+        sequence: u8,
+        /// The target, an index into the mission's.
+        target: u8,
+    },
+    /// The root asks a free robot to replace the end of a chain that fell silent: to become its child there, and to wait
+    /// for those beyond.
+    Replace {
+        /// The robot asked.
+        to: ActorId,
+        /// Number of this request among the sender's; repetitions have the same.
+        sequence: u8,
+        /// The chain.
+        chain: u8,
+        /// The robot that was next to the one that fell silent.
+        child: ActorId,
+        /// How many robots there are beyond the break, the child and the worker included.
+        beyond: u8,
+    },
     /// Yes to the request with this number.
     Accept {
         /// Who asked.
@@ -90,13 +123,59 @@ pub enum Request {
     Order(Order),
 }
 
-/// Which targets are expanded (paper algorithm 3).
+/// Which targets are expanded and which dismantled (paper algorithm 3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Order {
     /// Number of the order; 0 is the state at the start, before any order.
     pub epoch: u8,
-    /// The only target to expand, or none if all are.
-    pub only: Option<u8>,
+    /// The targets whose chains are dismantled; all others are expanded.
+    pub dismantled: TargetSet,
+}
+
+/// A set of targets, a bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TargetSet([u8; Self::BYTES]);
+
+impl TargetSet {
+    /// Bytes that hold a bit for each target that there can be.
+    pub const BYTES: usize = 32;
+
+    /// The set whose bits are in `bytes`, the first target's the lowest of the first; `None` if they are too many.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let mut set = Self::default();
+        set.0.get_mut(..bytes.len())?.copy_from_slice(bytes);
+        Some(set)
+    }
+
+    /// Its bits, without zero bytes at the end.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        let length = self.0.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1);
+        &self.0[..length]
+    }
+
+    /// Whether `target` is in it.
+    #[must_use]
+    pub const fn contains(&self, target: u8) -> bool {
+        self.0[target as usize / 8] & (1 << (target % 8)) != 0
+    }
+
+    /// Whether it is empty.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.bytes().is_empty()
+    }
+
+    /// Puts `target` in.
+    pub const fn insert(&mut self, target: u8) {
+        self.0[target as usize / 8] |= 1 << (target % 8);
+    }
+
+    /// Takes `target` out.
+    pub const fn remove(&mut self, target: u8) {
+        self.0[target as usize / 8] &= !(1 << (target % 8));
+    }
 }
 
 impl Order {
@@ -108,8 +187,8 @@ impl Order {
 
     /// Whether `target` is to be expanded.
     #[must_use]
-    pub fn expands(self, target: u8) -> bool {
-        self.only.is_none_or(|only| only == target)
+    pub const fn expands(self, target: u8) -> bool {
+        !self.dismantled.contains(target)
     }
 }
 

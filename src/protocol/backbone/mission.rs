@@ -56,6 +56,12 @@ impl Chain {
         self.lane * (ahead / self.rest).clamp(0.0, 1.0)
     }
 
+    /// The place of the relay next to the root, which stands at `origin`.
+    #[must_use]
+    pub fn first_place(&self, origin: Vec2) -> Vec2 {
+        origin + self.forward * self.rest + self.left() * self.lane
+    }
+
     /// The left of the way from the root to the target, a unit vector.
     #[must_use]
     pub fn left(&self) -> Vec2 {
@@ -92,6 +98,8 @@ pub struct Parameters {
     pub status_every: u64,
     pub strand_every: u64,
     pub request_every: u64,
+    pub healing_patience: u64,
+    pub silence_steps: u64,
     pub detector: DetectorConfig,
 }
 
@@ -227,6 +235,8 @@ impl Parameters {
             status_every: gossip.status.steps(control_period),
             strand_every,
             request_every,
+            healing_patience: steps(config.healing.patience.get()),
+            silence_steps: steps(detector.longest_silence().as_secs()),
             detector: detector.clone(),
         }
     }

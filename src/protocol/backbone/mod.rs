@@ -3,14 +3,20 @@
 
 mod codec;
 mod config;
+mod duty;
 mod forces;
 mod free;
+mod heal;
+mod isolated;
+mod lines;
 mod message;
 mod mission;
 mod neighbours;
 mod networker;
 mod recruit;
+mod requests;
 mod root;
+mod shortage;
 mod sidestep;
 mod strand;
 mod view;
@@ -22,12 +28,14 @@ mod tests;
 use std::rc::Rc;
 
 pub use codec::BackboneCodec;
-pub use config::{BackboneConfig, ControlLawConfig, RecruitingConfig, ShortageConfig, TargetConfig, TargetsConfig};
-pub use message::{Message, Order, Request, Role, Status, Strand};
+pub use config::{
+    BackboneConfig, ControlLawConfig, HealingConfig, RecruitingConfig, ShortageConfig, TargetConfig, TargetsConfig,
+};
+pub use message::{Message, Order, Request, Role, Status, Strand, TargetSet};
 
+use duty::Duty;
 use mission::{Mission, Parameters};
 use neighbours::Neighbours;
-use networker::Networker;
 use recruit::Recruiter;
 use root::Root;
 use sidestep::Sidestep;
@@ -55,15 +63,6 @@ pub struct Backbone {
     /// What arrived since the last control step and was read when the detector's timer woke the robot.
     unread: Vec<Reception<Message>>,
     told: Told,
-}
-
-/// What a robot does, with the state that this needs.
-#[derive(Debug)]
-enum Duty {
-    Free,
-    Root(Root),
-    Networker(Networker),
-    Worker(Worker),
 }
 
 /// What the metrics were last told.
@@ -142,7 +141,7 @@ impl Backbone {
                 Duty::Networker(networker) => {
                     networker.hear_child_strand(frame.sender, strand, self.known.id, self.known.step);
                 }
-                Duty::Root(root) => root.hear_child_strand(strand, self.known.id),
+                Duty::Root(root) => root.hear_child_strand(strand, self.known.id, self.known.step),
                 Duty::Free | Duty::Worker(_) => {}
             },
             Message::Request(request) => self.hear_request(frame.sender, *request, out),
@@ -169,60 +168,12 @@ impl Backbone {
         }
     }
 
-    fn hear_request(&mut self, sender: ActorId, request: Request, out: &mut Vec<Message>) {
-        match request {
-            Request::Join { to, sequence, chain } if to == self.known.id => {
-                out.push(Message::Request(self.answer(sender, sequence, chain)));
-            }
-            Request::Accept { to, sequence } if to == self.known.id => {
-                let (slots, step) = (self.duty.slots_mut(), self.known.step);
-                let known = slots.iter_mut().any(|slot| slot.hear_accept(sender, sequence, step));
-                if !known {
-                    out.push(Message::Request(Request::Release { to: sender }));
-                }
-            }
-            Request::Refuse { to, sequence } if to == self.known.id => {
-                for slot in self.duty.slots_mut() {
-                    slot.hear_refuse(sender, sequence);
-                }
-            }
-            Request::Release { to } if to == self.known.id => {
-                if matches!(&self.duty, Duty::Networker(networker) if networker.is_released_by(sender)) {
-                    self.become_free();
-                }
-            }
-            Request::Order(order) if order.is_newer_than(self.known.order) => self.known.order = order,
-            _ => {}
-        }
-    }
-
-    /// The answer to a request to join: a free robot accepts the first one.
-    fn answer(&mut self, sender: ActorId, sequence: u8, chain: u8) -> Request {
-        match &mut self.duty {
-            Duty::Networker(networker) => networker.hear_join(sender, sequence, chain, self.known.step),
-            Duty::Free if self.known.mission.has_chain(chain) => {
-                let joiner = Networker::new(chain, sender, sequence, self.known.mission.root, self.known.step);
-                self.duty = Duty::Networker(joiner);
-                self.previous = Role::Free;
-                Request::Accept { to: sender, sequence }
-            }
-            Duty::Free | Duty::Root(_) | Duty::Worker(_) => Request::Refuse { to: sender, sequence },
-        }
-    }
-
-    fn become_free(&mut self) {
-        self.previous = self.duty.role();
-        self.duty = Duty::Free;
-    }
-
     fn control(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
         let Knowledge {
             neighbours, detector, ..
         } = &mut self.known;
         neighbours.forget(|robot| detector.suspected_before(now, robot));
-        if matches!(&self.duty, Duty::Networker(networker) if networker.is_done(&self.known.view(&input.proximity))) {
-            self.become_free();
-        }
+        self.change_duty(&input.proximity);
         let desired = self.act(&input.proximity, &mut output.broadcasts);
         let parameters = &self.known.mission.parameters;
         let desired = forces::settle(desired, parameters.rest_speed);
@@ -231,6 +182,7 @@ impl Backbone {
             self.sidestep
                 .adjust(desired, self.known.position, self.known.step, stall, &mut input.random)
         } else {
+            self.sidestep.rest(self.known.position, self.known.step);
             desired
         };
         output.velocity = Some(velocity);
@@ -241,9 +193,10 @@ impl Backbone {
     fn act(&mut self, proximity: &[Vec2], out: &mut Vec<Message>) -> Vec2 {
         let view = self.known.view(proximity);
         match &mut self.duty {
+            Duty::Free if view.is_isolated() => isolated::velocity(&view),
             Duty::Free => free::velocity(&view),
             Duty::Root(root) => {
-                self.known.order = root.control(&view);
+                self.known.order = root.control(&view, &mut self.recruiter, out);
                 Vec2::zeros()
             }
             Duty::Networker(networker) => networker.control(&view, &mut self.recruiter, out),
@@ -255,7 +208,7 @@ impl Backbone {
     fn may_step_aside(&self) -> bool {
         match &self.duty {
             Duty::Free => true,
-            Duty::Networker(networker) => !networker.is_linked(),
+            Duty::Networker(networker) => !networker.is_settled(),
             Duty::Root(_) | Duty::Worker(_) => false,
         }
     }
@@ -316,41 +269,6 @@ impl Backbone {
             self.told.parents.clear();
             self.told.parents.extend(slots.iter().map(|slot| slot.parent));
             notes.push(Note::Parents(self.told.parents.clone()));
-        }
-    }
-}
-
-impl Duty {
-    const fn role(&self) -> Role {
-        match self {
-            Self::Free => Role::Free,
-            Self::Root(_) => Role::Root,
-            Self::Networker(_) => Role::Networker,
-            Self::Worker(_) => Role::Worker,
-        }
-    }
-
-    fn slots(&self) -> &[recruit::Slot] {
-        match self {
-            Self::Free | Self::Root(_) => &[],
-            Self::Networker(networker) => std::slice::from_ref(&networker.slot),
-            Self::Worker(worker) => &worker.slots,
-        }
-    }
-
-    fn slots_mut(&mut self) -> &mut [recruit::Slot] {
-        match self {
-            Self::Free | Self::Root(_) => &mut [],
-            Self::Networker(networker) => std::slice::from_mut(&mut networker.slot),
-            Self::Worker(worker) => &mut worker.slots,
-        }
-    }
-
-    fn target(&self, mission: &Mission) -> Option<u16> {
-        match self {
-            Self::Free | Self::Root(_) => None,
-            Self::Networker(networker) => Some(mission.chain(networker.slot.chain).target.into()),
-            Self::Worker(worker) => Some(worker.target.into()),
         }
     }
 }

@@ -65,6 +65,12 @@ impl Neighbours {
         self.rows.iter()
     }
 
+    /// Whether nobody was heard of late.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
     /// Forgets those that are `down`.
     pub fn forget(&mut self, down: impl Fn(ActorId) -> bool) {
         let mut row = 0;

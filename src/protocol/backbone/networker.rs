@@ -4,6 +4,7 @@ use crate::engine::ActorId;
 use crate::geometry::Vec2;
 
 use super::forces;
+use super::heal;
 use super::message::{Message, Request, Strand};
 use super::mission::Chain;
 use super::recruit::{Recruiter, Slot, joining_place};
@@ -23,9 +24,35 @@ pub struct Networker {
     linked: bool,
     /// The control step of the child's last sign that it does, or will.
     confirmed: u64,
-    /// The robots from the worker to the child, as last heard.
+    /// The robots from the worker to the child, as last heard; without the child while that is lost.
     outer: Vec<ActorId>,
+    /// Set while its child is lost.
+    orphan: Option<Orphan>,
+    /// Where the child was when it was last heard.
+    seen: Option<Vec2>,
 }
+
+/// A networker whose child is lost: it is the other end of a break.
+#[derive(Clone, Copy, Debug)]
+struct Orphan {
+    /// The control step from which on.
+    since: u64,
+    /// Whether one beyond the break was heard to have another parent.
+    bypassed: bool,
+}
+
+impl Orphan {
+    const fn since(step: u64) -> Self {
+        Self {
+            since: step,
+            bypassed: false,
+        }
+    }
+}
+
+/// Control steps for which the networker of each further link leaves it to those before it to take over from a lost
+/// worker.
+const PRECEDENCE: u64 = 10;
 
 impl Networker {
     /// A joiner that accepted request number `sequence` of `child` at control step `step`.
@@ -38,6 +65,34 @@ impl Networker {
             linked: false,
             confirmed: step,
             outer: Vec::new(),
+            orphan: None,
+            seen: None,
+        }
+    }
+
+    /// The end of a break, at control step `step`: it has the parent of `slot`, and waits for `child`, beyond which it
+    /// knows `outer`.
+    #[must_use]
+    pub fn waiting(slot: Slot, child: ActorId, sequence: u8, outer: Vec<ActorId>, step: u64) -> Self {
+        Self {
+            slot,
+            child,
+            sequence,
+            linked: true,
+            confirmed: step,
+            outer,
+            orphan: Some(Orphan::since(step)),
+            seen: None,
+        }
+    }
+
+    /// Answers a request to replace a lost robot: the one that it accepted it accepts again.
+    pub fn hear_replace(&mut self, sender: ActorId, sequence: u8, chain: u8) -> Request {
+        if self.orphan.is_some() && self.slot.parent == sender && self.sequence == sequence && self.slot.chain == chain
+        {
+            Request::Accept { to: sender, sequence }
+        } else {
+            Request::Refuse { to: sender, sequence }
         }
     }
 
@@ -51,19 +106,45 @@ impl Networker {
         Request::Accept { to: sender, sequence }
     }
 
+    /// Answers a request to adopt: it serves whoever asks while its child is lost, and its child again and again.
+    pub fn hear_adopt(&mut self, sender: ActorId, sequence: u8, chain: u8, step: u64) -> Request {
+        let is_ahead = sender == self.slot.parent || self.slot.strand.contains(&sender);
+        let is_welcome = self.linked && (self.orphan.is_some() || sender == self.child);
+        if chain != self.slot.chain || is_ahead || !is_welcome {
+            return Request::Refuse { to: sender, sequence };
+        }
+        if sender != self.child {
+            self.outer = vec![sender];
+        }
+        self.child = sender;
+        self.orphan = None;
+        self.confirmed = step;
+        Request::Accept { to: sender, sequence }
+    }
+
     /// Takes in a child strand: if it is the child's and names `me`, the two are linked.
     pub fn hear_child_strand(&mut self, sender: ActorId, heard: &Strand, me: ActorId, step: u64) {
-        let named = sender == self.child && heard.chain == self.slot.chain && heard.next == me;
-        if named && strand::keep(&mut self.outer, &heard.robots, me) {
-            self.linked = true;
-            self.confirmed = step;
+        if heard.chain != self.slot.chain {
+            return;
+        }
+        if sender == self.child && heard.next == me {
+            if strand::keep(&mut self.outer, &heard.robots, me) {
+                self.linked = true;
+                self.orphan = None;
+                self.confirmed = step;
+            }
+        } else if let Some(orphan) = &mut self.orphan
+            && heard.next != me
+            && self.outer.contains(&sender)
+        {
+            orphan.bypassed = true;
         }
     }
 
-    /// Whether its child counts on it.
+    /// Whether it holds its place, with a child and a parent that it counts on.
     #[must_use]
-    pub const fn is_linked(&self) -> bool {
-        self.linked
+    pub const fn is_settled(&self) -> bool {
+        self.linked && self.orphan.is_none() && self.slot.broken.is_none()
     }
 
     /// Whether a release by `sender` frees it.
@@ -72,11 +153,18 @@ impl Networker {
         sender == self.child
     }
 
-    /// Whether the chain has no use for it any more: its child does not count on it, or the chain is dismantled and it
-    /// has come home behind its child.
+    /// Whether the chain has no use for it any more: its child does not count on it, or is lost for long with nobody
+    /// else to count on it, or the chain is dismantled and it has come home behind its child.
     #[must_use]
     pub fn is_done(&self, view: &View<'_>) -> bool {
-        if view.step - self.confirmed > view.parameters().join_timeout {
+        let parameters = view.parameters();
+        let patience = match self.orphan {
+            Some(_) => parameters.healing_patience,
+            // Longer than a child's silence lasts that is not noticed yet.
+            None if self.linked => parameters.join_timeout + parameters.silence_steps,
+            None => parameters.join_timeout,
+        };
+        if view.step - self.confirmed > patience || self.orphan.is_some_and(|orphan| orphan.bypassed) {
             return true;
         }
         let is_home = |place: Vec2| (place - view.mission.origin).norm() <= view.parameters().safe;
@@ -86,22 +174,57 @@ impl Networker {
             && child.is_none_or(|child| is_home(child.position) || child.status.chain != self.slot.chain)
     }
 
-    /// The need that it passes on: its child's.
+    /// Whether it is the one to take over from its lost worker: the worker was its child, or whoever was between is
+    /// lost for long too, and nobody else is heard to have done so. Of the networkers of several links the first does.
+    #[must_use]
+    pub fn is_heir(&self, view: &View<'_>) -> bool {
+        let Some(orphan) = self.orphan else { return false };
+        let chain = self.slot.chain;
+        let target = view.mission.chain(chain).target;
+        let patience = if self.outer.is_empty() {
+            PRECEDENCE * u64::from(chain - view.mission.targets[usize::from(target)].chains.start)
+        } else {
+            view.parameters().healing_patience
+        };
+        view.step - orphan.since >= patience && view.expands(chain) && view.worker_of(target).is_none()
+    }
+
+    /// The need that it passes on: its child's, and its own while it makes up for a lost one.
     #[must_use]
     pub fn need(&self, view: &View<'_>) -> bool {
-        self.linked && view.neighbours.get(self.child).is_some_and(|child| child.status.need)
+        match self.orphan {
+            Some(_) => !self.outer.is_empty(),
+            None => self.linked && view.neighbours.get(self.child).is_some_and(|child| child.status.need),
+        }
+    }
+
+    /// Notices that the child is lost.
+    pub fn watch_child(&mut self, view: &View<'_>) {
+        if !self.linked {
+            return;
+        }
+        if let Some(child) = view.neighbours.get(self.child) {
+            self.seen = Some(child.position);
+        } else if self.orphan.is_none() {
+            self.orphan = Some(Orphan::since(view.step));
+            if self.outer.last() == Some(&self.child) {
+                self.outer.pop();
+            }
+        }
     }
 
     /// One control step: recruits where the chain must grow, and answers with the velocity that it wants.
     pub fn control(&mut self, view: &View<'_>, recruiter: &mut Recruiter, out: &mut Vec<Message>) -> Vec2 {
         let wanted = self.wants_parent(view);
-        self.slot.tend(view, wanted, recruiter, out);
+        self.slot.tend(view, wanted, Some(&self.outer), recruiter, out);
         if !self.linked {
             self.joining(view)
-        } else if view.expands(self.slot.chain) {
-            self.holding(view)
-        } else {
+        } else if !view.expands(self.slot.chain) {
             self.retreating(view)
+        } else if self.slot.broken.is_some() || self.orphan.is_some() {
+            self.bridging(view)
+        } else {
+            self.holding(view)
         }
     }
 
@@ -145,6 +268,19 @@ impl Networker {
         desired + self.avoidance(view, desired) * open
     }
 
+    /// Makes for the other end of a break, and keeps the neighbour that it has.
+    fn bridging(&self, view: &View<'_>) -> Vec2 {
+        let (way, tie) = if let Some(broken) = &self.slot.broken {
+            (broken.way(view), view.way_to(self.child))
+        } else {
+            let first = || view.mission.chain(self.slot.chain).first_place(view.mission.origin);
+            let place = self.seen.unwrap_or_else(first);
+            (place - view.position, view.way_to(self.slot.parent))
+        };
+        let desired = heal::velocity(view, way, tie.into_iter());
+        desired + self.avoidance(view, desired)
+    }
+
     /// Comes home ahead of its child, never so fast that the child falls behind.
     fn retreating(&self, view: &View<'_>) -> Vec2 {
         let parameters = view.parameters();
@@ -162,7 +298,7 @@ impl Networker {
 
     fn avoidance(&self, view: &View<'_>, desired: Vec2) -> Vec2 {
         let parameters = view.parameters();
-        let range = if self.linked {
+        let range = if self.is_settled() {
             parameters.backbone_avoidance_range
         } else {
             parameters.avoidance_range
@@ -177,7 +313,8 @@ impl Networker {
             next: self.child,
             robots: strand::passed_on(&self.slot.strand, me),
         }));
-        if self.linked {
+        // The robot that it names would take it for linked.
+        if self.linked && self.slot.broken.is_none() {
             out.push(Message::ChildStrand(Strand {
                 chain: self.slot.chain,
                 next: self.slot.parent,

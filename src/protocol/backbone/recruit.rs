@@ -9,8 +9,10 @@
 use crate::engine::ActorId;
 use crate::geometry::{Vec2, direction};
 
+use super::heal::{self, Break};
 use super::message::{Message, Request, Role, Strand};
 use super::mission::Chain;
+use super::neighbours::Neighbour;
 use super::strand;
 use super::view::View;
 
@@ -31,6 +33,10 @@ pub struct Slot {
     pub parent: ActorId,
     /// The robots from the root to the parent, as last heard.
     pub strand: Vec<ActorId>,
+    /// Set from the loss of a parent until there is another one.
+    pub broken: Option<Break>,
+    /// Where the parent was when it was last heard.
+    seen: Option<Vec2>,
     /// Who was asked to become the parent in the root's stead.
     invitation: Option<Invitation>,
 }
@@ -38,11 +44,21 @@ pub struct Slot {
 #[derive(Clone, Copy, Debug)]
 struct Invitation {
     to: ActorId,
+    kind: Kind,
     sequence: u8,
     /// Whether it was accepted.
     accepted: bool,
     /// The control step of the request, and then of the last sign of the one who accepted.
     sign: u64,
+}
+
+/// What a robot is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A free robot: to come and join.
+    Join,
+    /// A networker at the other end of a break: to bridge it.
+    Adopt,
 }
 
 /// What a robot remembers about recruiting, over all its slots.
@@ -55,11 +71,11 @@ pub struct Recruiter {
 
 impl Recruiter {
     /// The known free robot nearest to `place` that was not asked lately.
-    fn candidate(&mut self, view: &View<'_>, place: Vec2) -> Option<ActorId> {
+    pub fn candidate(&mut self, view: &View<'_>, place: Vec2) -> Option<ActorId> {
         self.asked.retain(|(_, until)| *until > view.step);
         view.neighbours
             .iter()
-            .filter(|known| known.status.role == Role::Free && !self.asked.iter().any(|(id, _)| *id == known.id))
+            .filter(|known| known.status.role == Role::Free && !self.was_asked(known.id))
             .min_by(|a, b| {
                 let distance = |position: Vec2| (position - place).norm_squared();
                 let nearer = distance(a.position).total_cmp(&distance(b.position));
@@ -68,12 +84,42 @@ impl Recruiter {
             .map(|known| known.id)
     }
 
-    fn invite(&mut self, view: &View<'_>, to: ActorId) -> Invitation {
+    /// The robot that can serve as a parent in `chain` and is farthest from the root, but for those asked lately: the farther out it is, the less the chain need come in.
+    fn bridge(&mut self, view: &View<'_>, chain: u8, descendants: Option<&[ActorId]>) -> Option<ActorId> {
+        self.asked.retain(|(_, until)| *until > view.step);
+        view.neighbours
+            .iter()
+            .filter(|known| heal::can_serve(view, known, chain, descendants) && !self.was_asked(known.id))
+            .max_by(|a, b| {
+                let distance = |position: Vec2| (position - view.mission.origin).norm_squared();
+                let farther = distance(a.position).total_cmp(&distance(b.position));
+                farther.then(b.id.cmp(&a.id))
+            })
+            .map(|known| known.id)
+    }
+
+    fn was_asked(&self, robot: ActorId) -> bool {
+        self.asked.iter().any(|(id, _)| *id == robot)
+    }
+
+    /// The number of a new request to `to`, which is not asked again for `memory` control steps.
+    pub fn number(&mut self, view: &View<'_>, to: ActorId, memory: u64) -> u8 {
         self.sequence = self.sequence.wrapping_add(1);
-        self.asked.push((to, view.step + view.parameters().refusal_memory));
+        self.asked.push((to, view.step + memory));
+        self.sequence
+    }
+
+    fn invite(&mut self, view: &View<'_>, to: ActorId, kind: Kind) -> Invitation {
+        let parameters = view.parameters();
+        let memory = match kind {
+            Kind::Join => parameters.refusal_memory,
+            // The other end of a break may not have noticed yet: it is asked again soon.
+            Kind::Adopt => parameters.request_patience,
+        };
         Invitation {
             to,
-            sequence: self.sequence,
+            kind,
+            sequence: self.number(view, to, memory),
             accepted: false,
             sign: view.step,
         }
@@ -88,7 +134,18 @@ impl Slot {
             chain,
             parent: root,
             strand: vec![root],
+            broken: None,
+            seen: None,
             invitation: None,
+        }
+    }
+
+    /// A slot of chain number `chain` whose parent was lost, last heard at `place` if it ever was.
+    #[must_use]
+    pub fn broken(chain: u8, root: ActorId, place: Option<Vec2>) -> Self {
+        Self {
+            broken: Some(Break { place, offer: None }),
+            ..Self::new(chain, root)
         }
     }
 
@@ -104,36 +161,83 @@ impl Slot {
         view.way_to_root().norm() >= view.parameters().recruit_ratio * view.mission.chain(self.chain).rest
     }
 
-    /// Does what a control step asks for: drops what is over, swaps in a joiner that is in place, and recruits where one
-    /// is `wanted`.
-    pub fn tend(&mut self, view: &View<'_>, wanted: bool, recruiter: &mut Recruiter, out: &mut Vec<Message>) {
+    /// Does what a control step asks for: drops what is over, mends a break, swaps in a joiner that is in place, and
+    /// recruits where one is `wanted`. The `descendants` of a relay are those on the side of the worker.
+    pub fn tend(
+        &mut self,
+        view: &View<'_>,
+        wanted: bool,
+        descendants: Option<&[ActorId]>,
+        recruiter: &mut Recruiter,
+        out: &mut Vec<Message>,
+    ) {
         self.give_up_a_lost_parent(view);
+        self.mend(view, descendants);
         self.settle_invitation(view, wanted);
-        if wanted && self.invitation.is_none() {
-            let place = joining_place(view.mission.origin, view.position, view.mission.chain(self.chain));
-            self.invitation = recruiter
-                .candidate(view, place)
-                .map(|candidate| recruiter.invite(view, candidate));
+        if self.invitation.is_none() {
+            self.invite(view, wanted, descendants, recruiter);
         }
         if let Some(invitation) = self.invitation
             && view.turn().is_multiple_of(view.parameters().request_every)
         {
-            out.push(Message::Request(Request::Join {
-                to: invitation.to,
-                sequence: invitation.sequence,
-                chain: self.chain,
-            }));
+            out.push(Message::Request(invitation.request(self.chain)));
         }
     }
 
-    /// A parent that says that it serves this chain no more is replaced by the root, from which it was recruited.
+    /// A parent that is silent, or says that it serves this chain no more, is replaced by the root, from which it was
+    /// recruited; where that is out of reach, the chain is broken.
     fn give_up_a_lost_parent(&mut self, view: &View<'_>) {
-        let lost = view.neighbours.get(self.parent).is_some_and(|parent| {
-            parent.id != view.mission.root
-                && (parent.status.role != Role::Networker || parent.status.chain != self.chain)
-        });
-        if lost {
-            *self = Self::new(self.chain, view.mission.root);
+        let root = view.mission.root;
+        if self.parent == root {
+            return;
+        }
+        match view.neighbours.get(self.parent) {
+            Some(parent) if self.is_served_by(parent) => self.seen = Some(parent.position),
+            Some(_) => *self = Self::broken(self.chain, root, None),
+            None => *self = Self::broken(self.chain, root, self.seen),
+        }
+    }
+
+    fn is_served_by(&self, parent: &Neighbour) -> bool {
+        parent.status.role == Role::Networker && parent.status.chain == self.chain && !self.strand.is_empty()
+    }
+
+    /// Takes up an offer to become the parent.
+    fn mend(&mut self, view: &View<'_>, descendants: Option<&[ActorId]>) {
+        let Some(broken) = &mut self.broken else { return };
+        broken.look_around(view);
+        let offer = broken.offer.and_then(|robot| view.neighbours.get(robot));
+        if let Some(parent) = offer.filter(|known| heal::can_serve(view, known, self.chain, descendants)) {
+            let root = view.mission.root;
+            *self = Self::new(self.chain, root);
+            self.link_to(parent.id, root);
+        }
+    }
+
+    fn link_to(&mut self, parent: ActorId, root: ActorId) {
+        self.parent = parent;
+        self.strand = vec![root, parent];
+        self.broken = None;
+        self.invitation = None;
+    }
+
+    /// Asks the other end of a break if one is in sight; at the root, asks a free robot if one is wanted.
+    fn invite(&mut self, view: &View<'_>, wanted: bool, descendants: Option<&[ActorId]>, recruiter: &mut Recruiter) {
+        if self.broken.is_some() {
+            if let Some(other_end) = recruiter.bridge(view, self.chain, descendants) {
+                self.invitation = Some(recruiter.invite(view, other_end, Kind::Adopt));
+                return;
+            }
+            if view.way_to_root().norm() > view.parameters().critical {
+                return;
+            }
+            self.broken = None;
+        }
+        if wanted {
+            let place = joining_place(view.mission.origin, view.position, view.mission.chain(self.chain));
+            self.invitation = recruiter
+                .candidate(view, place)
+                .map(|candidate| recruiter.invite(view, candidate, Kind::Join));
         }
     }
 
@@ -141,9 +245,7 @@ impl Slot {
     fn settle_invitation(&mut self, view: &View<'_>, wanted: bool) {
         let Some(invitation) = self.invitation else { return };
         if invitation.accepted && self.is_in_place(view, invitation.to) {
-            self.parent = invitation.to;
-            self.strand = vec![view.mission.root, invitation.to];
-            self.invitation = None;
+            self.link_to(invitation.to, view.mission.root);
             return;
         }
         let parameters = view.parameters();
@@ -152,7 +254,11 @@ impl Slot {
         } else {
             parameters.request_patience
         };
-        if view.step - invitation.sign > patience || (!wanted && !invitation.accepted) {
+        let unwanted = match invitation.kind {
+            Kind::Join => !wanted && !invitation.accepted,
+            Kind::Adopt => self.broken.is_none(),
+        };
+        if view.step - invitation.sign > patience || unwanted {
             self.invitation = None;
         }
     }
@@ -176,8 +282,11 @@ impl Slot {
     pub fn hear_accept(&mut self, sender: ActorId, sequence: u8, step: u64) -> bool {
         match &mut self.invitation {
             Some(invitation) if invitation.to == sender && invitation.sequence == sequence => {
-                invitation.accepted = true;
                 invitation.sign = step;
+                match (invitation.kind, &mut self.broken) {
+                    (Kind::Adopt, Some(broken)) => broken.offer = Some(sender),
+                    _ => invitation.accepted = true,
+                }
                 true
             }
             // A repeated answer from one that is a parent already.
@@ -195,19 +304,36 @@ impl Slot {
 
     /// Takes in the parent strand of `sender`. Says whether `sender` is a parent or a joiner of this slot.
     pub fn hear_parent_strand(&mut self, sender: ActorId, heard: &Strand, me: ActorId, step: u64) -> bool {
+        let names_me = heard.chain == self.chain && heard.next == me;
         if sender == self.parent {
-            if heard.chain == 0 || (heard.chain == self.chain && heard.next == me) {
-                strand::keep(&mut self.strand, &heard.robots, me);
+            // A strand that comes back to this robot is no way to the root: without one, the parent is given up.
+            if (heard.chain == 0 || names_me) && !strand::keep(&mut self.strand, &heard.robots, me) {
+                self.strand.clear();
             }
             return true;
         }
-        match &mut self.invitation {
-            Some(invitation) if invitation.to == sender && heard.chain == self.chain && heard.next == me => {
+        match (&mut self.invitation, &mut self.broken) {
+            (Some(invitation), _) if names_me && invitation.to == sender && invitation.kind == Kind::Join => {
                 invitation.accepted = true;
                 invitation.sign = step;
                 true
             }
+            // The other end of the break, or a parent that was given up too early.
+            (_, Some(broken)) if names_me => {
+                broken.offer = Some(sender);
+                true
+            }
             _ => false,
+        }
+    }
+}
+
+impl Invitation {
+    fn request(&self, chain: u8) -> Request {
+        let Self { to, sequence, .. } = *self;
+        match self.kind {
+            Kind::Join => Request::Join { to, sequence, chain },
+            Kind::Adopt => Request::Adopt { to, sequence, chain },
         }
     }
 }

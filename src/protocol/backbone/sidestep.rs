@@ -43,6 +43,14 @@ impl Sidestep {
     }
 }
 
+impl Sidestep {
+    /// Takes note that the robot is at `position` on control step `step` and has no reason to step aside.
+    pub fn rest(&mut self, position: Vec2, step: u64) {
+        self.anchor = position;
+        self.since = step;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -58,6 +66,18 @@ mod tests {
         let aside = commands.iter().filter(|command| **command != desired).count();
         assert_eq!(aside, 9);
         assert!(commands.iter().all(|command| (command.norm() - 0.02).abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_robot_that_rested_gets_its_full_time_before_it_steps_aside() {
+        let mut sidestep = Sidestep::default();
+        let mut random = Philox::from_u64_seed(1);
+        let desired = Vec2::new(0.02, 0.0);
+        sidestep.rest(Vec2::zeros(), 100);
+        for step in 101..=130 {
+            assert_eq!(sidestep.adjust(desired, Vec2::zeros(), step, 30, &mut random), desired);
+        }
+        assert_ne!(sidestep.adjust(desired, Vec2::zeros(), 131, 30, &mut random), desired);
     }
 
     #[test]

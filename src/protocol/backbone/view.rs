@@ -5,9 +5,9 @@ use std::rc::Rc;
 use crate::engine::ActorId;
 use crate::geometry::Vec2;
 
-use super::message::Order;
+use super::message::{Order, Role};
 use super::mission::{Mission, Parameters};
-use super::neighbours::Neighbours;
+use super::neighbours::{Neighbour, Neighbours};
 use crate::protocol::detector::Detector;
 
 /// What a robot knows whatever its role.
@@ -97,5 +97,19 @@ impl<'a> View<'a> {
     #[must_use]
     pub fn expands(&self, chain: u8) -> bool {
         self.order.expands(self.mission.chain(chain).target)
+    }
+
+    /// The worker of target number `target`, if it was heard of late.
+    #[must_use]
+    pub fn worker_of(&self, target: u8) -> Option<&'a Neighbour> {
+        let chain = self.mission.targets[usize::from(target)].chains.start;
+        let is_it = |known: &&Neighbour| known.status.role == Role::Worker && known.status.chain == chain;
+        self.neighbours.iter().find(is_it)
+    }
+
+    /// Whether nobody was heard of late, though somebody must have been: all others are gone or its own radio is dead.
+    #[must_use]
+    pub fn is_isolated(&self) -> bool {
+        self.step > self.parameters().silence_steps && self.neighbours.is_empty()
     }
 }

@@ -6,6 +6,7 @@ use crate::geometry::Vec2;
 
 use super::forces;
 use super::free;
+use super::heal;
 use super::message::{Message, Strand};
 use super::mission::{Mission, Parameters};
 use super::recruit::{Recruiter, Slot};
@@ -31,6 +32,38 @@ impl Worker {
         }
     }
 
+    /// The robot whose chain is that of `slot`, as the new worker of its target. Its other links are yet to be made.
+    #[must_use]
+    pub fn heir(slot: Slot, mission: &Mission) -> Self {
+        let target = mission.chain(slot.chain).target;
+        let chains = mission.targets[usize::from(target)].chains.clone();
+        let mut own = Some(slot);
+        let slot_of = |chain| {
+            own.take_if(|slot| slot.chain == chain)
+                .unwrap_or_else(|| Slot::broken(chain, mission.root, None))
+        };
+        Self {
+            target,
+            slots: chains.map(slot_of).collect(),
+        }
+    }
+
+    /// Who else works for its target, nearer to it than this robot.
+    #[must_use]
+    pub fn better(&self, view: &View<'_>) -> Option<ActorId> {
+        let at = view.mission.targets[usize::from(self.target)].at;
+        let other = view.worker_of(self.target)?;
+        let distances = (other.position - at)
+            .norm_squared()
+            .total_cmp(&(view.position - at).norm_squared());
+        distances.then(other.id.cmp(&view.id)).is_lt().then_some(other.id)
+    }
+
+    /// Its first chain that has a relay, and so may be of use to another worker.
+    pub fn into_slot(self, root: ActorId) -> Option<Slot> {
+        self.slots.into_iter().find(|slot| slot.parent != root)
+    }
+
     /// The first of its chains.
     #[must_use]
     pub fn first_chain(&self) -> u8 {
@@ -53,13 +86,23 @@ impl Worker {
         let need = self.need(view);
         for slot in &mut self.slots {
             let wanted = need && lacks_relay(slot, view) && slot.is_out_enough(view);
-            slot.tend(view, wanted, recruiter, out);
+            slot.tend(view, wanted, None, recruiter, out);
         }
-        if view.order.expands(self.target) {
-            self.advancing(view)
-        } else {
+        if !view.order.expands(self.target) {
             self.retreating(view)
+        } else if let Some(broken) = self.slots.iter().find_map(|slot| slot.broken.as_ref()) {
+            self.bridging(view, broken.way(view))
+        } else {
+            self.advancing(view)
         }
+    }
+
+    /// Makes for the other end of a break, and keeps the parents that it has.
+    fn bridging(&self, view: &View<'_>, way: Vec2) -> Vec2 {
+        let kept = self.slots.iter().filter(|slot| slot.broken.is_none());
+        let ties = kept.filter_map(|slot| view.way_to(slot.parent));
+        let desired = heal::velocity(view, way, ties);
+        desired + avoidance(view, desired, view.parameters())
     }
 
     /// Makes for the target as far as the springs to its parents allow (paper eq. 10).
@@ -112,7 +155,8 @@ impl Worker {
 
     /// The strands that it sends to its parents, one a link.
     pub fn strands(&self, me: ActorId, out: &mut Vec<Message>) {
-        out.extend(self.slots.iter().map(|slot| {
+        let linked = self.slots.iter().filter(|slot| slot.broken.is_none());
+        out.extend(linked.map(|slot| {
             Message::ChildStrand(Strand {
                 chain: slot.chain,
                 next: slot.parent,

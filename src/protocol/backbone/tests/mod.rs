@@ -1,5 +1,7 @@
 //! Robots that are handed frames by hand: joining, its undoing, and orders.
 
+mod healing;
+
 use super::*;
 use crate::protocol::{Frame, TimerId};
 use rand_philox::Philox;
@@ -10,8 +12,8 @@ const FREE: u32 = 2;
 const OTHER_FREE: u32 = 3;
 
 /// A root at the centre, a worker far enough out to recruit, and two free robots in between.
-fn robots() -> Vec<Backbone> {
-    let config = ron::from_str("(targets: Ring(count: 1, radius: 4.5))").unwrap();
+fn robots(targets: u8) -> Vec<Backbone> {
+    let config = ron::from_str(&format!("(targets: Ring(count: {targets}, radius: 4.5))")).unwrap();
     let poses: Vec<Pose> = [0.0, 1.2, 0.7, 0.4]
         .map(|x| Pose {
             position: Vec2::new(x, 0.0),
@@ -37,7 +39,7 @@ struct Bench {
 impl Bench {
     fn new(robot: u32, x: f64) -> Self {
         Self {
-            robot: robots().remove(robot as usize),
+            robot: robots(1).remove(robot as usize),
             x,
             sequence: 0,
         }
@@ -70,8 +72,20 @@ impl Bench {
             random: Philox::from_u64_seed(1),
         };
         let mut output = Output::default();
+        self.robot.known.detector.expire(now, &mut output);
+        output.clear();
         self.robot.step(now, &mut input, &mut output);
         output
+    }
+
+    /// Control steps in which `heard` arrives, for `seconds`; the last one's output.
+    fn run(&mut self, seconds: f64, heard: &[(u32, f64, Message)]) -> Output<Message> {
+        let steps = (seconds / 0.1).round() as usize;
+        (0..steps).fold(Output::default(), |_, _| self.step(heard))
+    }
+
+    fn role(&self) -> Role {
+        self.robot.duty.role()
     }
 }
 
@@ -279,55 +293,56 @@ fn a_worker_whose_parent_serves_it_no_more_falls_back_to_the_root() {
     assert_eq!(worker.robot.duty.slots()[0].parent, ActorId(ROOT));
 }
 
+fn only(target: u8) -> TargetSet {
+    let mut set = TargetSet::default();
+    set.insert(target);
+    set
+}
+
 #[test]
-fn a_root_that_sees_too_few_robots_for_long_orders_one_target_and_not_before() {
+fn a_root_that_sees_too_few_robots_for_long_leaves_out_a_target_and_not_before() {
     let mut root = Bench::new(ROOT, 0.0);
-    let one_free = [(FREE, 0.7, status(Role::Free, false, 0))];
-    for _ in 0..100 {
-        root.step(&one_free);
-    }
+    root.robot = robots(2).remove(ROOT as usize);
+    let workers = [WORKER, FREE].map(|worker| (worker, 1.2, status(Role::Worker, true, worker as u8)));
+    root.run(10.0, &workers);
     assert_eq!(root.robot.known.order, Order::default());
-    root.step(&one_free);
+    root.step(&workers);
     let order = Order {
         epoch: 1,
-        only: Some(0),
+        dismantled: only(1),
     };
     assert_eq!(root.robot.known.order, order);
-    let repeated = (0..10)
-        .flat_map(|_| requests(&root.step(&one_free)))
-        .collect::<Vec<_>>();
+    let repeated = (0..10).flat_map(|_| requests(&root.step(&workers))).collect::<Vec<_>>();
     assert!(repeated.contains(&Request::Order(order)));
 }
 
 #[test]
 fn a_root_with_enough_robots_orders_nothing() {
     let mut root = Bench::new(ROOT, 0.0);
-    let two_free = [
+    let enough = [
+        (WORKER, 1.2, status(Role::Worker, true, 1)),
         (FREE, 0.7, status(Role::Free, false, 0)),
         (OTHER_FREE, 0.4, status(Role::Free, false, 0)),
     ];
     for _ in 0..300 {
-        assert_eq!(requests(&root.step(&two_free)), []);
+        assert_eq!(requests(&root.step(&enough)), []);
     }
 }
 
 #[test]
 fn an_older_order_does_not_undo_a_newer_one() {
     let mut free = Bench::new(FREE, 0.7);
-    let order = |epoch, only| Message::Request(Request::Order(Order { epoch, only }));
-    free.step(&[(ROOT, 0.0, order(2, Some(1))), (ROOT, 0.0, order(1, None))]);
-    let newest = Order {
-        epoch: 2,
-        only: Some(1),
-    };
-    assert_eq!(free.robot.known.order, newest);
-    let zero = Order { epoch: 0, only: None };
-    assert!(zero.is_newer_than(Order { epoch: 255, only: None }), "numbers wrap");
+    let order = |epoch, dismantled| Order { epoch, dismantled };
+    let (newer, older) = (order(2, only(1)), order(1, TargetSet::default()));
+    free.step(&[newer, older].map(|order| (ROOT, 0.0, Message::Request(Request::Order(order)))));
+    assert_eq!(free.robot.known.order, newer);
+    let (zero, last) = (order(0, TargetSet::default()), order(255, TargetSet::default()));
+    assert!(zero.is_newer_than(last), "numbers wrap");
 }
 
 #[test]
 fn wakes_other_than_control_steps_only_listen() {
-    let mut robot = robots().remove(FREE as usize);
+    let mut robot = robots(1).remove(FREE as usize);
     let mut output = Output::default();
     for wake in [Wake::Reception, Wake::Timer(TimerId(0))] {
         let mut input = Input {

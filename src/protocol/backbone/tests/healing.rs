@@ -1,0 +1,243 @@
+//! Robots whose neighbours fall silent, frame by frame.
+
+use super::*;
+
+/// Longer than the silence after which a robot is declared inactive.
+const SILENT_S: f64 = 4.5;
+
+fn adopt(to: u32, sequence: u8) -> Message {
+    let (to, chain) = (ActorId(to), 1);
+    Message::Request(Request::Adopt { to, sequence, chain })
+}
+
+/// A relay at 1.4 m whose parent is the root and whose child, `CHILD` at 2.8 m, is a relay below the worker.
+fn relay() -> Bench {
+    let mut relay = Bench::new(FREE, 1.4);
+    relay.step(&[(CHILD, 2.8, join(FREE, 1))]);
+    relay.run(0.3, &below());
+    assert!(matches!(&relay.robot.duty, duty::Duty::Networker(networker) if networker.is_settled()));
+    relay
+}
+
+const CHILD: u32 = OTHER_FREE;
+const FAR: u32 = 9;
+
+fn below() -> [(u32, f64, Message); 3] {
+    [
+        (ROOT, 0.0, status(Role::Root, false, 0)),
+        (CHILD, 2.8, status(Role::Networker, false, 1)),
+        (CHILD, 2.8, Message::ChildStrand(strand(FREE, &[WORKER, CHILD]))),
+    ]
+}
+
+fn root_alone() -> [(u32, f64, Message); 1] {
+    [(ROOT, 0.0, status(Role::Root, false, 0))]
+}
+
+#[test]
+fn a_relay_that_lost_its_child_goes_out_wants_more_robots_and_serves_whoever_asks_from_beyond() {
+    let mut relay = relay();
+    let output = relay.run(SILENT_S, &root_alone());
+    assert!(
+        output.velocity.is_some_and(|velocity| velocity.x > 0.0),
+        "towards its child's place"
+    );
+    assert!(
+        output.broadcasts.contains(&status(Role::Networker, true, 1)),
+        "it passes on a need"
+    );
+    let strand_without_child = Message::ChildStrand(strand(ROOT, &[WORKER, FREE]));
+    assert!(output.broadcasts.contains(&strand_without_child));
+    for _ in 0..2 {
+        let answers = requests(&relay.step(&[(WORKER, 3.0, adopt(FREE, 5))]));
+        assert!(answers.contains(&accept(WORKER, 5)), "again and again: {answers:?}");
+    }
+    let output = relay.step(&[(WORKER, 3.0, Message::ChildStrand(strand(FREE, &[WORKER])))]);
+    assert!(
+        output
+            .broadcasts
+            .contains(&Message::ParentStrand(strand(WORKER, &[ROOT, FREE])))
+    );
+}
+
+#[test]
+fn a_relay_with_a_child_or_of_another_chain_or_below_the_asker_refuses_to_adopt() {
+    let refused = |relay: &mut Bench, sender| {
+        let to = ActorId(sender);
+        let answers = requests(&relay.step(&[(sender, 1.0, adopt(FREE, 5))]));
+        answers.contains(&Request::Refuse { to, sequence: 5 })
+    };
+    assert!(refused(&mut relay(), FAR), "its child is there");
+    let mut orphan = relay();
+    orphan.run(SILENT_S, &root_alone());
+    assert!(refused(&mut orphan, ROOT), "its parent asks");
+    assert!(refused(&mut Bench::new(FREE, 0.7), FAR), "it is free");
+}
+
+#[test]
+fn a_relay_that_lost_its_child_is_free_when_one_from_beyond_has_another_parent() {
+    let mut relay = relay();
+    relay.run(SILENT_S, &root_alone());
+    relay.step(&[(WORKER, 3.0, Message::ChildStrand(strand(FAR, &[WORKER])))]);
+    assert_eq!(relay.role(), Role::Free);
+}
+
+#[test]
+fn the_relay_next_to_a_lost_worker_takes_over_and_not_if_it_hears_another_worker() {
+    for (another, role) in [(false, Role::Worker), (true, Role::Networker)] {
+        let mut relay = Bench::new(FREE, 1.4);
+        relay.step(&[(WORKER, 2.8, join(FREE, 1))]);
+        let strand = Message::ChildStrand(strand(FREE, &[WORKER]));
+        relay.run(
+            0.3,
+            &[(WORKER, 2.8, status(Role::Worker, true, 1)), (WORKER, 2.8, strand)],
+        );
+        let mut heard = root_alone().to_vec();
+        heard.extend(another.then(|| (FAR, 2.0, status(Role::Worker, true, 1))));
+        relay.run(SILENT_S, &heard);
+        assert_eq!(relay.role(), role);
+    }
+}
+
+#[test]
+fn of_two_workers_of_one_target_the_farther_one_stands_down() {
+    for (other, role) in [(2.0, Role::Free), (0.6, Role::Worker)] {
+        let mut worker = Bench::new(WORKER, 1.2);
+        worker.run(0.2, &[(FAR, other, status(Role::Worker, true, 1))]);
+        assert_eq!(worker.role(), role, "the other at {other} m");
+    }
+}
+
+/// A worker at 4.2 m whose parent is `FREE` at 2.8 m.
+fn worker_with_parent() -> Bench {
+    let mut worker = Bench::new(WORKER, 1.2);
+    worker.step(&[(FREE, 0.7, status(Role::Free, false, 0))]);
+    worker.step(&[(FREE, 0.7, Message::Request(accept(WORKER, 1)))]);
+    worker.step(&[(FREE, 0.7, status(Role::Networker, true, 1))]);
+    assert_eq!(worker.robot.duty.slots()[0].parent, ActorId(FREE));
+    worker.x = 4.2;
+    worker.run(1.0, &[(FREE, 2.8, status(Role::Networker, true, 1))]);
+    worker
+}
+
+#[test]
+fn a_worker_that_lost_its_parent_comes_in_and_asks_the_relay_beyond_to_adopt_it() {
+    let mut worker = worker_with_parent();
+    let nobody_near = [(FAR, 4.0, status(Role::Free, false, 0))];
+    let output = worker.run(SILENT_S, &nobody_near);
+    assert!(output.velocity.is_some_and(|velocity| velocity.x < 0.0));
+    assert_eq!(
+        worker.robot.duty.slots()[0].parent,
+        ActorId(ROOT),
+        "for want of another"
+    );
+    assert!(
+        !output
+            .broadcasts
+            .iter()
+            .any(|message| matches!(message, Message::ChildStrand(_))),
+        "nobody is told that it is linked"
+    );
+    let relay = (OTHER_FREE, 2.6, status(Role::Networker, true, 1));
+    let asked = requests(&worker.step(std::slice::from_ref(&relay)));
+    let [Request::Adopt { to, sequence, .. }] = asked[..] else {
+        panic!("{asked:?}")
+    };
+    assert_eq!(to, ActorId(OTHER_FREE));
+    let answer = Message::Request(Request::Accept {
+        to: ActorId(WORKER),
+        sequence,
+    });
+    let output = worker.step(&[(OTHER_FREE, 2.6, answer)]);
+    assert!(
+        output
+            .broadcasts
+            .contains(&Message::ChildStrand(strand(OTHER_FREE, &[WORKER])))
+    );
+}
+
+#[test]
+fn a_parent_suspected_wrongly_is_taken_back_when_it_is_heard_again() {
+    let mut worker = worker_with_parent();
+    worker.run(SILENT_S, &[(FAR, 4.0, status(Role::Free, false, 0))]);
+    let parent = [
+        (FREE, 2.8, status(Role::Networker, true, 1)),
+        (FREE, 2.8, Message::ParentStrand(strand(WORKER, &[ROOT, FREE]))),
+    ];
+    let answers = requests(&worker.step(&parent));
+    assert!(!answers.contains(&Request::Release { to: ActorId(FREE) }));
+    assert_eq!(worker.robot.duty.slots()[0].parent, ActorId(FREE));
+}
+
+#[test]
+fn a_parent_whose_way_to_the_root_leads_through_its_child_is_given_up() {
+    let mut worker = worker_with_parent();
+    let circle = Message::ParentStrand(strand(WORKER, &[ROOT, WORKER, FREE]));
+    worker.step(&[(FREE, 2.8, circle)]);
+    assert_ne!(worker.robot.duty.slots()[0].parent, ActorId(FREE));
+}
+
+#[test]
+fn a_robot_that_hears_nobody_becomes_free_and_goes_beside_the_chains() {
+    let mut worker = worker_with_parent();
+    let output = worker.run(SILENT_S, &[]);
+    assert_eq!(worker.role(), Role::Free);
+    let velocity = output.velocity.expect("a command");
+    assert!(
+        velocity.x < 0.0,
+        "towards the root, round to the other side: {velocity}"
+    );
+}
+
+#[test]
+fn the_root_asks_a_free_robot_to_replace_the_lost_end_of_a_chain_and_that_one_waits_for_those_beyond() {
+    let mut root = Bench::new(ROOT, 0.0);
+    let free = (OTHER_FREE, 0.4, status(Role::Free, false, 0));
+    let end = [
+        (FREE, 1.4, status(Role::Networker, false, 1)),
+        (FREE, 1.4, Message::ChildStrand(strand(ROOT, &[WORKER, 8, FREE]))),
+        free.clone(),
+    ];
+    root.run(1.0, &end);
+    let asked = requests(&root.run(SILENT_S, &[free]));
+    let replace = |sequence| Request::Replace {
+        to: ActorId(OTHER_FREE),
+        sequence,
+        chain: 1,
+        child: ActorId(8),
+        beyond: 2,
+    };
+    assert_eq!(asked, [replace(1)]);
+
+    let mut spare = Bench::new(OTHER_FREE, 0.4);
+    for _ in 0..2 {
+        let answers = requests(&spare.step(&[(ROOT, 0.0, Message::Request(replace(1)))]));
+        assert_eq!(answers, [accept(ROOT, 1)]);
+    }
+    assert_eq!(spare.role(), Role::Networker);
+    let output = spare.run(10.0, &root_alone());
+    assert!(
+        output.velocity.is_some_and(|velocity| velocity.x > 0.0),
+        "out, and it does not give up soon"
+    );
+    let answers = requests(&spare.step(&[(8, 2.0, adopt(OTHER_FREE, 3))]));
+    assert_eq!(answers, [accept(8, 3)]);
+}
+
+#[test]
+fn the_root_appoints_a_worker_for_a_target_that_has_none_left() {
+    let mut root = Bench::new(ROOT, 0.0);
+    let free = [(OTHER_FREE, 0.4, status(Role::Free, false, 0))];
+    assert_eq!(requests(&root.run(7.0, &free)), []);
+    let asked = requests(&root.run(1.5, &free));
+    let work = Request::Work {
+        to: ActorId(OTHER_FREE),
+        sequence: 1,
+        target: 0,
+    };
+    assert_eq!(asked, [work]);
+    let mut spare = Bench::new(OTHER_FREE, 0.4);
+    let answers = requests(&spare.step(&[(ROOT, 0.0, Message::Request(work))]));
+    assert!(answers.contains(&accept(ROOT, 1)), "{answers:?}");
+    assert_eq!(spare.role(), Role::Worker);
+}
