@@ -16,12 +16,12 @@ fn scenario(text: &str) -> Scenario {
     parse("test.ron", text, &[]).unwrap_or_else(|report| panic!("{report}"))
 }
 
-fn run_with(scenario: &Scenario, driver: DriverKind) -> TrialRecord {
-    run_trial(scenario, 0, driver, &CancellationToken::new()).expect("the trial reaches its end")
+fn run_with(scenario: &Scenario, driver: DriverKind, trial: u32) -> TrialRecord {
+    run_trial(scenario, trial, driver, &CancellationToken::new()).expect("the trial reaches its end")
 }
 
 fn run(scenario: &Scenario) -> TrialRecord {
-    run_with(scenario, DriverKind::Inline)
+    run_with(scenario, DriverKind::Inline, 0)
 }
 
 /// Still robots that all hear each other and say their status every 0.1 s, for 60 s; it arrives 20 ms later.
@@ -68,8 +68,8 @@ const EVERY_KIND: &str = "[
 #[test]
 fn a_run_with_every_kind_of_fault_is_the_same_under_both_drivers() {
     let mut scenario = backbone(15.0, EVERY_KIND);
-    let inline = run_with(&scenario, DriverKind::Inline);
-    assert_eq!(inline, run_with(&scenario, DriverKind::Actors));
+    let inline = run_with(&scenario, DriverKind::Inline, 0);
+    assert_eq!(inline, run_with(&scenario, DriverKind::Actors, 0));
     let kinds: Vec<_> = inline.faults.iter().map(|episode| episode.kind.name()).collect();
     for kind in ["silence", "crash", "mute", "deaf", "partition", "burst"] {
         assert!(kinds.contains(&kind), "no {kind} among {kinds:?}");
@@ -90,8 +90,8 @@ fn a_run_with_every_kind_of_fault_is_the_same_under_both_drivers() {
     )
     .unwrap();
     assert_eq!(
-        run_with(&scenario, DriverKind::Inline),
-        run_with(&scenario, DriverKind::Actors)
+        run_with(&scenario, DriverKind::Inline, 0),
+        run_with(&scenario, DriverKind::Actors, 0)
     );
 }
 
@@ -240,7 +240,7 @@ proptest! {
         let record = run(&scenario(&text));
         let fates = &record.ledger[0];
         prop_assert!(fates.is_balanced() && fates.offered > 0);
-        prop_assert_eq!(run_with(&scenario(&text), DriverKind::Actors), record);
+        prop_assert_eq!(run_with(&scenario(&text), DriverKind::Actors, 0), record);
     }
 }
 
@@ -250,10 +250,11 @@ fn the_shipped_examples_of_faults_run_and_something_fails() {
     let examples = shipped::files().into_iter().filter(|file| file.starts_with(&folder));
     let mut seen = 0;
     for file in examples {
-        let sets = ["time_limit=150.0", "metrics.hold=145.0"].map(|set| set.parse().expect("a valid override"));
+        let sets = ["time_limit=390.0", "metrics.hold=385.0"].map(|set| set.parse().expect("a valid override"));
         let scenario = load(&file, &sets).unwrap_or_else(|report| panic!("{report}"));
-        let record = run(&scenario);
-        assert!(!record.faults.is_empty(), "nothing failed in {}", file.display());
+        // Radiation spares a trial once in a while, and three in a row once in a hundred times.
+        let something_fails = |trial| !run_with(&scenario, DriverKind::Inline, trial).faults.is_empty();
+        assert!((0..3).any(something_fails), "nothing failed in {}", file.display());
         seen += 1;
     }
     assert_eq!(seen, 4);

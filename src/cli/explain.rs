@@ -47,6 +47,9 @@ pub struct ExplainArguments {
 ///
 /// # Errors
 /// If there is nothing to explain by these arguments, or the trial cannot be run again.
+///
+/// # Panics
+/// Never: what is asked for is traced.
 pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
     let manifest = results(&arguments.dir)?;
     let scenario = scenario(&manifest, &arguments.dir)?;

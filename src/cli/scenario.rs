@@ -92,7 +92,7 @@ pub enum Format {
     /// A report for people
     #[default]
     Text,
-    /// The summary: one JSON document and nothing else
+    /// The same figures as one JSON document, and nothing else
     Json,
 }
 

@@ -4,7 +4,7 @@
 //! open, needs no state between draws, and does not move when another stream is read more or less often.
 //! That is what lets two settings be compared under common random numbers, and trials run in any order.
 
-use rand_philox::{Philox, splitmix64};
+use rand_philox::{Philox, philox4x32_10, splitmix64};
 
 /// What a stream is used for. Two purposes never share a draw.
 ///
@@ -69,6 +69,15 @@ impl KeyedStreams {
         let counter = (u128::from(a) << 96) | (u128::from(b) << 64) | (u128::from(sequence) << 32);
         Philox::new(self.key, counter)
     }
+
+    /// The first two words that `next_u64` of [`at`](Self::at) would give, without the stream.
+    #[inline]
+    #[must_use]
+    pub fn first_two(&self, a: u32, b: u32, sequence: u32) -> [u64; 2] {
+        let [first_low, first_high, second_low, second_high] =
+            philox4x32_10([0, sequence, b, a], self.key).map(u64::from);
+        [first_low | first_high << 32, second_low | second_high << 32]
+    }
 }
 
 #[cfg(test)]
@@ -107,6 +116,13 @@ mod tests {
         ] {
             assert_ne!(base, other);
         }
+    }
+
+    #[test]
+    fn the_first_two_words_are_those_of_the_stream() {
+        let streams = Streams::new(1, 2).keyed(LOSS);
+        let mut stream = streams.at(7, 1 << 31, 5);
+        assert_eq!(streams.first_two(7, 1 << 31, 5), [stream.next_u64(), stream.next_u64()]);
     }
 
     #[test]

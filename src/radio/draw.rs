@@ -1,5 +1,8 @@
 //! What keys the randomness of a reception.
 
+use std::convert::Infallible;
+
+use rand::TryRng;
 use rand_philox::{Philox, u32_to_unit_f64};
 
 use crate::engine::{ActorId, KeyedStreams, Purpose};
@@ -26,6 +29,19 @@ impl FrameCopy {
         streams.at(self.sender.0, self.receiver.0, self.sequence)
     }
 
+    /// What this copy meets in its channel: the 64 bits that decide its loss, and what its latency is drawn from.
+    #[inline]
+    pub fn channel(self, streams: KeyedStreams) -> (u64, LatencyBits) {
+        let [loss, next] = streams.first_two(self.sender.0, self.receiver.0, self.sequence);
+        let bits = LatencyBits {
+            next: Some(next),
+            later: None,
+            copy: self,
+            streams,
+        };
+        (loss, bits)
+    }
+
     /// Whether something of this `probability` happens to this copy.
     ///
     /// One uniform decides, the same whatever the probability, so that what happens at 0.1 also happens at 0.3.
@@ -36,5 +52,59 @@ impl FrameCopy {
             return false;
         }
         probability >= 1.0 || u32_to_unit_f64(self.stream(streams).next_u32()) < probability
+    }
+}
+
+/// The bits of a copy's stream after those that decide its loss. Nearly every latency takes 64 of them, which came with the
+/// loss in one block of the generator; only what takes more opens the stream.
+#[derive(Debug)]
+pub(super) struct LatencyBits {
+    next: Option<u64>,
+    later: Option<Philox>,
+    copy: FrameCopy,
+    streams: KeyedStreams,
+}
+
+impl LatencyBits {
+    #[inline]
+    fn bits(&mut self) -> u64 {
+        match self.next.take() {
+            Some(bits) => bits,
+            None => self.later_bits(),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn later_bits(&mut self) -> u64 {
+        let Self { copy, streams, .. } = *self;
+        let stream = self.later.get_or_insert_with(|| {
+            let mut stream = copy.stream(streams);
+            let _ = [stream.next_u64(), stream.next_u64()];
+            stream
+        });
+        stream.next_u64()
+    }
+}
+
+impl TryRng for LatencyBits {
+    type Error = Infallible;
+
+    /// The low half of 64 bits; the other half goes unused.
+    #[inline]
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        Ok(self.bits() as u32)
+    }
+
+    #[inline]
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        Ok(self.bits())
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        for chunk in bytes.chunks_mut(8) {
+            chunk.copy_from_slice(&self.bits().to_le_bytes()[..chunk.len()]);
+        }
+        Ok(())
     }
 }

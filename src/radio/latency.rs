@@ -1,9 +1,9 @@
 //! How long copies take.
 
 use rand_distr::{Distribution, Exp1, Gamma, StandardNormal, StandardUniform};
-use rand_philox::Philox;
 
 use super::config::LatencyConfig;
+use super::draw::LatencyBits;
 use crate::engine::Span;
 
 /// A latency model.
@@ -36,14 +36,17 @@ impl Latency {
         }
     }
 
-    /// Whether every copy takes the same time.
-    pub fn is_constant(&self) -> bool {
-        matches!(self.model, Model::Constant(_))
+    /// The latency, if every copy takes the same time.
+    pub fn constant(&self) -> Option<Span> {
+        match self.model {
+            Model::Constant(span) => Some(span),
+            Model::Random(_) => None,
+        }
     }
 
     /// The latency of a copy, drawn from `channel`, its own stream, and rounded to the nearest nanosecond.
     #[inline]
-    pub fn draw(&self, channel: &mut Philox) -> Span {
+    pub fn draw(&self, channel: &mut LatencyBits) -> Span {
         match &self.model {
             Model::Constant(span) => *span,
             Model::Random(law) => Span::from_secs(law.draw(channel)),
@@ -84,7 +87,7 @@ impl Model {
 impl Law {
     /// One latency in seconds.
     #[inline]
-    fn draw(&self, random: &mut Philox) -> f64 {
+    fn draw(&self, random: &mut LatencyBits) -> f64 {
         match self {
             Self::Uniform { min, width } => {
                 let share: f64 = StandardUniform.sample(random);
@@ -107,7 +110,7 @@ impl Law {
 /// A normal draw, repeated until it is at least `min`. As `min` is at most `mean`, each try succeeds with a
 /// probability of at least one half.
 #[inline]
-fn truncated_normal(mean: f64, std_dev: f64, min: f64, random: &mut Philox) -> f64 {
+fn truncated_normal(mean: f64, std_dev: f64, min: f64, random: &mut LatencyBits) -> f64 {
     loop {
         let normal: f64 = StandardNormal.sample(random);
         let latency = mean + std_dev * normal;

@@ -6,7 +6,7 @@ use super::latency::Latency;
 use super::loss::Loss;
 use super::sensing::Sensing;
 use super::{Fate, Listener, LossCause};
-use crate::engine::{ActorId, KeyedStreams, SimTime, Streams};
+use crate::engine::{ActorId, KeyedStreams, SimTime, Span, Streams};
 
 /// The radio of one run: settles the fate of every copy of every frame.
 #[derive(Debug)]
@@ -17,8 +17,8 @@ pub struct Medium {
     loss: Loss,
     latency: Latency,
     channel: KeyedStreams,
-    /// Whether the fate of a copy needs its channel's stream at all.
-    is_random: bool,
+    /// The latency of every copy, if none is ever lost or late: no fate needs its channel's stream then.
+    certain: Option<Span>,
     sensing: Sensing,
 }
 
@@ -41,7 +41,7 @@ impl Medium {
             range,
             sequences: vec![0; robots],
             channel: streams.keyed(CHANNEL),
-            is_random: !(loss.is_none() && latency.is_constant()),
+            certain: latency.constant().filter(|_| loss.is_none()),
             loss,
             latency,
             sensing: Sensing::new(&config.sensing, *streams),
@@ -101,13 +101,18 @@ impl Medium {
     #[allow(clippy::inline_always)]
     #[inline(always)]
     fn fate(&mut self, now: SimTime, copy: FrameCopy, listener: Listener) -> Fate {
-        let mut channel = copy.stream(self.channel);
-        let probability = self.loss.probability(copy, listener.sender.norm_squared());
-        if self.is_random && unit_interval(channel.next_u64()) < probability {
-            return Fate::Lost(LossCause::Channel);
-        }
+        let latency = if let Some(latency) = self.certain {
+            latency
+        } else {
+            let probability = self.loss.probability(copy, listener.sender.norm_squared());
+            let (bits, mut channel) = copy.channel(self.channel);
+            if unit_interval(bits) < probability {
+                return Fate::Lost(LossCause::Channel);
+            }
+            self.latency.draw(&mut channel)
+        };
         Fate::Arrives {
-            at: now + self.latency.draw(&mut channel),
+            at: now + latency,
             displacement: self.sensing.displacement(copy, listener.sender),
         }
     }

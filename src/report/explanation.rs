@@ -320,7 +320,9 @@ impl Fate {
 /// A line on statuses in a row that met the same fate.
 fn tell_alike(group: &[Status], text: &mut String) {
     let [first, .., last] = group else {
-        group.iter().for_each(|status| tell_one(status, text));
+        for status in group {
+            tell_one(status, text);
+        }
         return;
     };
     let range = |of: fn(f32, f32) -> f32| {

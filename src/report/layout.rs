@@ -1,7 +1,11 @@
 //! Words on a terminal.
 
+use std::fmt::Write as _;
+
 /// Columns that every line keeps within.
 pub const WIDTH: usize = 80;
+/// Columns of the names on the left.
+const MARGIN: usize = 14;
 
 /// Breaks `words` at blanks into lines of at most `width` characters; a longer word stands alone.
 pub fn wrap(words: &str, width: usize) -> Vec<String> {
@@ -16,4 +20,53 @@ pub fn wrap(words: &str, width: usize) -> Vec<String> {
         }
     }
     lines
+}
+
+/// Text being laid out.
+pub struct Page {
+    /// What is laid out so far.
+    pub text: String,
+    /// Whether to use colours.
+    pub colour: bool,
+}
+
+impl Page {
+    /// The name in bold, then the question that the results answer.
+    pub fn title(&mut self, name: &str, question: Option<&str>) {
+        let name = self.bold(name);
+        self.line(&name);
+        for line in wrap(question.unwrap_or_default(), WIDTH) {
+            self.line(&line);
+        }
+    }
+
+    /// A heading, after an empty line.
+    pub fn heading(&mut self, words: &str) {
+        let words = self.bold(words);
+        self.line("");
+        self.line(&words);
+    }
+
+    /// A name on the left, words on the right, over as many lines as they need.
+    pub fn entry(&mut self, name: &str, words: &str) {
+        let mut name = name;
+        for line in wrap(words, WIDTH - MARGIN - 2) {
+            self.line(&format!("  {name:<MARGIN$}{line}"));
+            name = "";
+        }
+    }
+
+    /// A line as it is.
+    pub fn line(&mut self, words: &str) {
+        // Writing to a string does not fail.
+        let _ = writeln!(self.text, "{}", words.trim_end());
+    }
+
+    fn bold(&self, words: &str) -> String {
+        if self.colour {
+            format!("\u{1b}[1m{words}\u{1b}[0m")
+        } else {
+            words.to_owned()
+        }
+    }
 }

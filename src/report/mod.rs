@@ -1,6 +1,7 @@
 //! Finished results as text for people.
 
 mod explanation;
+mod failures;
 mod layout;
 mod number;
 mod terminal;

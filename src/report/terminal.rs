@@ -1,17 +1,14 @@
 //! The report that `desim scenario` ends with.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle, Table, TableStyle};
 
-use super::layout::{WIDTH, wrap};
+use super::failures;
+use super::layout::{Page, WIDTH};
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use crate::metrics::Summary;
-use crate::metrics::summary::{Detection, Directions, HealingSummary, Quantity, Spread, TopicBandwidth};
-
-/// Columns of the names on the left.
-const MARGIN: usize = 14;
+use crate::metrics::summary::{Detection, Directions, Quantity, Spread, TopicBandwidth};
 
 /// What a report is made of.
 #[derive(Debug)]
@@ -52,7 +49,7 @@ pub fn terminal(input: &Input) -> String {
     };
     page.title(&input.summary.scenario, input.question);
     outcome(&mut page, input);
-    failures(&mut page, input.summary);
+    failures::section(&mut page, input.summary);
     bandwidth(&mut page, input.summary);
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
@@ -99,70 +96,6 @@ fn outcome(page: &mut Page, input: &Input) {
         "robots used",
         &format!("{} on average", estimate(&summary.robots_used.estimate, figure)),
     );
-}
-
-fn failures(page: &mut Page, summary: &Summary) {
-    let Some(faults) = &summary.faults else {
-        return;
-    };
-    page.heading("Failures");
-    let roles = faults.by_role.0.iter().filter(|(_, failures)| *failures > 0);
-    let roles: Vec<_> = roles
-        .map(|(role, failures)| format!("{role} {}", count(*failures)))
-        .collect();
-    let roles = if roles.is_empty() {
-        String::new()
-    } else {
-        format!("; in all trials: {}", roles.join(", "))
-    };
-    let robots = estimate(&faults.robots.estimate, figure);
-    page.entry("robots", &format!("{robots} failed in a trial{roles}"));
-    if faults.links > 0 {
-        page.entry("links", &format!("{} faults in all trials", count(faults.links)));
-    }
-    if let Some(healing) = &summary.healing {
-        healed(page, healing);
-    }
-}
-
-fn healed(page: &mut Page, healing: &HealingSummary) {
-    let total = &healing.total;
-    let harm = format!(
-        "a target lost a link or its worker by {} failures, nothing by {}",
-        count(total.failures),
-        count(healing.harmless)
-    );
-    page.entry("harm", &harm);
-    if total.failures == 0 {
-        return;
-    }
-    let time = format!(
-        "{} of {}; Kaplan–Meier median of the time {}",
-        count(total.healed),
-        count(total.failures),
-        estimate(&total.time.median, seconds)
-    );
-    page.entry("healed", &time);
-    for (name, part) in healing.by_role.0.iter().chain(&healing.by_overlap.0) {
-        if part.failures > 0 {
-            let (healed, failures) = (count(part.healed), count(part.failures));
-            let time = estimate(&part.time.median, seconds);
-            page.entry("", &format!("{name}: {healed} of {failures}, median {time}"));
-        }
-    }
-    if total.healed == 0 {
-        return;
-    }
-    let distance = estimate(&total.distance.estimate, figure);
-    page.entry(
-        "meanwhile",
-        &format!("the target's robots moved {distance} m all together"),
-    );
-    let frames = total.frames.0.iter();
-    let frames: Vec<_> = frames
-        .map(|(topic, frames)| format!("{topic} {}", maybe(frames.estimate.value)))
-        .collect();
-    page.entry("", &format!("and sent on average, in frames: {}", frames.join(", ")));
 }
 
 fn bandwidth(page: &mut Page, summary: &Summary) {
@@ -396,48 +329,4 @@ fn run(page: &mut Page, input: &Input) {
     page.entry("", &input.files.join(", "));
     page.line("");
     page.line("Figures in brackets are 95 % intervals over trials.");
-}
-
-/// Text being laid out.
-struct Page {
-    text: String,
-    colour: bool,
-}
-
-impl Page {
-    fn title(&mut self, name: &str, question: Option<&str>) {
-        let name = self.bold(name);
-        self.line(&name);
-        for line in wrap(question.unwrap_or_default(), WIDTH) {
-            self.line(&line);
-        }
-    }
-
-    fn heading(&mut self, words: &str) {
-        let words = self.bold(words);
-        self.line("");
-        self.line(&words);
-    }
-
-    /// A name on the left, words on the right, over as many lines as they need.
-    fn entry(&mut self, name: &str, words: &str) {
-        let mut name = name;
-        for line in wrap(words, WIDTH - MARGIN - 2) {
-            self.line(&format!("  {name:<MARGIN$}{line}"));
-            name = "";
-        }
-    }
-
-    fn line(&mut self, words: &str) {
-        // Writing to a string does not fail.
-        let _ = writeln!(self.text, "{}", words.trim_end());
-    }
-
-    fn bold(&self, words: &str) -> String {
-        if self.colour {
-            format!("\u{1b}[1m{words}\u{1b}[0m")
-        } else {
-            words.to_owned()
-        }
-    }
 }

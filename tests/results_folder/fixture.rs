@@ -143,7 +143,7 @@ fn traffic(robot: u32, topic: u8, trial: u32) -> TrafficRow {
 /// Robot 3 falls silent in every second trial, and recovers in every fourth; a partition comes and goes in the others.
 fn faults(trial: u32) -> Vec<FaultEpisode> {
     let until = (trial % 4 != 2).then_some(SimTime::from_secs(50.0));
-    let kind = if trial % 2 == 0 {
+    let kind = if trial.is_multiple_of(2) {
         FaultKind::Robot {
             robot: ActorId(3),
             effect: Effect::Silence,
@@ -178,8 +178,8 @@ fn healing(trial: u32) -> Vec<HealingEpisode> {
         frames: vec![300, u64::from(trial), 5, 6],
         payload_bytes: vec![1200, 4 * u64::from(trial), 60, 70],
     };
-    let mended = (trial % 4 == 0).then(|| 30.3 + f64::from(trial));
-    if trial % 2 == 0 {
+    let mended = trial.is_multiple_of(4).then(|| 30.3 + f64::from(trial));
+    if trial.is_multiple_of(2) {
         vec![episode(20.0, mended), episode(21.5, Some(21.5))]
     } else {
         Vec::new()

@@ -1,6 +1,7 @@
 //! `detection.parquet`: a row for each suspicion, and for each failure and robot that observed it.
 
 use super::super::table::Column;
+use crate::engine::{SimTime, Span};
 use crate::metrics::TrialRecord;
 use crate::metrics::detection::{FailureOutcome, ObservedFailure, Suspicion};
 use crate::radio::LossCause;
@@ -62,10 +63,8 @@ pub fn columns() -> Vec<Column<Row>> {
             row.either(|event| event.cause.name(), |_| "failure").into()
         }),
         Col::optional_f64("heard_s", |row| row.suspicion().map(|event| event.heard.as_secs())),
-        Col::optional_f64("trusted_s", |row| row.suspicion()?.until.map(|until| until.as_secs())),
-        Col::optional_f64("mistake_duration_s", |row| {
-            row.suspicion()?.duration.map(|duration| duration.as_secs())
-        }),
+        Col::optional_f64("trusted_s", |row| row.suspicion()?.until.map(SimTime::as_secs)),
+        Col::optional_f64("mistake_duration_s", |row| row.suspicion()?.duration.map(Span::as_secs)),
         Col::optional_f64("detection_time_s", |row| match &row.event {
             Event::Failure(ObservedFailure {
                 outcome: FailureOutcome::Detected(after),

@@ -178,6 +178,7 @@ fn keys_are_stable_and_in_a_stable_order() {
         "lambda2_min",
         "connected_share",
         "robots_used",
+        "detection",
         "steps",
         "simulated_s",
     ];
@@ -186,6 +187,18 @@ fn keys_are_stable_and_in_a_stable_order() {
         keys(&json["frames"]),
         ["offered", "delivered", "in_flight", "lost", "by_topic", "unit"]
     );
+    let detection = [
+        "suspicions",
+        "mistakes",
+        "failures",
+        "detection_time_s",
+        "mistake_recurrence_s",
+        "mistake_duration_s",
+        "mistake_rate_hz",
+        "query_accuracy",
+        "monitored_s",
+    ];
+    assert_eq!(keys(&json["detection"]), detection);
     assert_eq!(keys(&json["delivery_ratio"]), ["value", "ci95", "n", "unit"]);
     assert_eq!(keys(&json["steps_to_completion"]), ["median", "unit"]);
     assert_eq!(keys(&json["latency_s"]), ["p50", "p95", "p99", "mean", "unit"]);
