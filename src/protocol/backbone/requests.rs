@@ -18,11 +18,10 @@ impl Backbone {
                 out.push(Message::Request(self.answer(sender, sequence, chain)));
             }
             Request::Adopt { to, sequence, chain } if to == self.known.id => {
-                let answer = match &mut self.duty {
-                    Duty::Networker(networker) => networker.hear_adopt(sender, sequence, chain, self.known.step),
-                    _ => Request::Refuse { to: sender, sequence },
-                };
-                out.push(Message::Request(answer));
+                // One whose status was not heard yet would be missed at once: it will ask again.
+                if self.known.neighbours.get(sender).is_some() {
+                    out.push(Message::Request(self.answer_adopt(sender, sequence, chain)));
+                }
             }
             Request::Work { to, sequence, target } if to == self.known.id => {
                 out.push(Message::Request(self.answer_work(sender, sequence, target)));
@@ -65,6 +64,13 @@ impl Backbone {
         let slots = self.duty.slots_mut();
         if !slots.iter_mut().any(|slot| slot.hear_accept(sender, sequence, step)) {
             out.push(Message::Request(Request::Release { to: sender }));
+        }
+    }
+
+    fn answer_adopt(&mut self, sender: ActorId, sequence: u8, chain: u8) -> Request {
+        match &mut self.duty {
+            Duty::Networker(networker) => networker.hear_adopt(sender, sequence, chain, self.known.step),
+            _ => Request::Refuse { to: sender, sequence },
         }
     }
 

@@ -49,7 +49,8 @@ fn a_relay_that_lost_its_child_goes_out_wants_more_robots_and_serves_whoever_ask
     let strand_without_child = Message::ChildStrand(strand(ROOT, &[WORKER, FREE]));
     assert!(output.broadcasts.contains(&strand_without_child));
     for _ in 0..2 {
-        let answers = requests(&relay.step(&[(WORKER, 3.0, adopt(FREE, 5))]));
+        let asker = [status(Role::Worker, true, 1), adopt(FREE, 5)].map(|message| (WORKER, 3.0, message));
+        let answers = requests(&relay.step(&asker));
         assert!(answers.contains(&accept(WORKER, 5)), "again and again: {answers:?}");
     }
     let output = relay.step(&[(WORKER, 3.0, Message::ChildStrand(strand(FREE, &[WORKER])))]);
@@ -64,7 +65,8 @@ fn a_relay_that_lost_its_child_goes_out_wants_more_robots_and_serves_whoever_ask
 fn a_relay_with_a_child_or_of_another_chain_or_below_the_asker_refuses_to_adopt() {
     let refused = |relay: &mut Bench, sender| {
         let to = ActorId(sender);
-        let answers = requests(&relay.step(&[(sender, 1.0, adopt(FREE, 5))]));
+        let asker = [status(Role::Networker, true, 1), adopt(FREE, 5)].map(|message| (sender, 1.0, message));
+        let answers = requests(&relay.step(&asker));
         answers.contains(&Request::Refuse { to, sequence: 5 })
     };
     assert!(refused(&mut relay(), FAR), "its child is there");
@@ -220,7 +222,8 @@ fn the_root_asks_a_free_robot_to_replace_the_lost_end_of_a_chain_and_that_one_wa
         output.velocity.is_some_and(|velocity| velocity.x > 0.0),
         "out, and it does not give up soon"
     );
-    let answers = requests(&spare.step(&[(8, 2.0, adopt(OTHER_FREE, 3))]));
+    let asker = [status(Role::Networker, true, 1), adopt(OTHER_FREE, 3)].map(|message| (8, 2.0, message));
+    let answers = requests(&spare.step(&asker));
     assert_eq!(answers, [accept(8, 3)]);
 }
 
