@@ -135,6 +135,8 @@ impl Networker {
             }
         } else if let Some(orphan) = &mut self.orphan
             && heard.next != me
+            // One that names the lost child has not missed it yet.
+            && heard.next != self.child
             && self.outer.contains(&sender)
         {
             orphan.bypassed = true;

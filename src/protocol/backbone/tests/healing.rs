@@ -80,6 +80,8 @@ fn a_relay_with_a_child_or_of_another_chain_or_below_the_asker_refuses_to_adopt(
 fn a_relay_that_lost_its_child_is_free_when_one_from_beyond_has_another_parent() {
     let mut relay = relay();
     relay.run(SILENT_S, &root_alone());
+    relay.step(&[(WORKER, 3.0, Message::ChildStrand(strand(CHILD, &[WORKER])))]);
+    assert_eq!(relay.role(), Role::Networker, "that one has not missed its parent yet");
     relay.step(&[(WORKER, 3.0, Message::ChildStrand(strand(FAR, &[WORKER])))]);
     assert_eq!(relay.role(), Role::Free);
 }
