@@ -17,11 +17,11 @@ impl Backbone {
             Request::Join { to, sequence, chain } if to == self.known.id => {
                 out.push(Message::Request(self.answer(sender, sequence, chain)));
             }
-            Request::Adopt { to, sequence, chain } if to == self.known.id => {
-                // One whose status was not heard yet would be missed at once: it will ask again.
-                if self.known.neighbours.get(sender).is_some() {
-                    out.push(Message::Request(self.answer_adopt(sender, sequence, chain)));
-                }
+            // One whose status was not heard yet would be missed at once: it will ask again.
+            Request::Adopt { to, sequence, chain }
+                if to == self.known.id && self.known.neighbours.get(sender).is_some() =>
+            {
+                out.push(Message::Request(self.answer_adopt(sender, sequence, chain)));
             }
             Request::Work { to, sequence, target } if to == self.known.id => {
                 out.push(Message::Request(self.answer_work(sender, sequence, target)));
