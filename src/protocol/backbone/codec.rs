@@ -316,7 +316,9 @@ mod tests {
             id().prop_map(|to| Request::Release { to }),
             (any::<u8>(), prop::collection::vec(0_u8..255, 0..4)).prop_map(|(epoch, targets)| {
                 let mut dismantled = TargetSet::default();
-                targets.into_iter().for_each(|target| dismantled.insert(target));
+                for target in targets {
+                    dismantled.insert(target);
+                }
                 Request::Order(Order { epoch, dismantled })
             }),
         ];
