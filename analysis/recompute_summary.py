@@ -11,13 +11,13 @@ import json
 import math
 import pathlib
 import sys
-from statistics import NormalDist
 
 import polars as pl
 import xxhash
 from scipy.stats import binom, t as student
 
-Z = NormalDist().inv_cdf(0.975)
+from paper.statistics import Z, estimate, wilson
+
 INTERVAL_TOLERANCE = 1e-9
 
 
@@ -27,10 +27,6 @@ def total(values):
     for value in values:
         result += value
     return result
-
-
-def estimate(value, low=None, high=None, n=0):
-    return {"value": value, "ci95": [low, high], "n": n}
 
 
 def mean(values):
@@ -60,17 +56,6 @@ def median(values):
     ranks = [k for k in range(1, n + 1) if binom.cdf(k - 1, n, 0.5) <= 0.025]
     low, high = (ordered[ranks[-1] - 1], ordered[n - ranks[-1]]) if ranks else (None, None)
     return estimate(quantile(ordered, 0.5), low, high, n)
-
-
-def wilson(successes, n):
-    if n == 0:
-        return estimate(None)
-    share, shrink = successes / n, 1 + Z * Z / n
-    centre = (share + Z * Z / (2 * n)) / shrink
-    half = Z / shrink * math.sqrt(share * (1 - share) / n + Z * Z / (4 * n * n))
-    low = 0.0 if successes == 0 else centre - half
-    high = 1.0 if successes == n else centre + half
-    return estimate(share, low, high, n)
 
 
 def kaplan_meier(times):

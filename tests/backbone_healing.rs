@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use desim::engine::{ActorId, SimTime};
+use desim::metrics::detection::Verdict;
 use desim::metrics::{Outcome, RobotState, TrialRecord};
 use desim::protocol::backbone::Role;
 use desim::scenario::{Override, Scenario, load};
@@ -169,12 +170,18 @@ fn a_robot_lost_while_it_joins_is_replaced_and_leaves_nobody_half_joined() {
 }
 
 #[test]
-fn a_finished_backbone_keeps_its_chains_under_loss_without_a_false_suspicion_of_a_neighbour_in_a_chain() {
+fn a_finished_backbone_keeps_its_chains_under_loss_and_suspects_nobody_falsely() {
     let overrides = ["time_limit=400.0".into(), "metrics=(hold: 380.0)".into()];
     let record = run("hold30min.ron", &overrides, 0);
     let finished = SimTime::from_secs(f64::from(BREAK_S));
     let mut later = record.connectivity.iter().filter(|sample| sample.at >= finished);
     assert!(later.all(|sample| sample.links.iter().all(|&links| links == 2)));
+    let suspicions = &record.detection.suspicions;
+    assert!(
+        suspicions
+            .iter()
+            .all(|suspicion| suspicion.verdict() == Verdict::OutOfRange)
+    );
 }
 
 #[test]

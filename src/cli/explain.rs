@@ -13,7 +13,7 @@ use crate::engine::ActorId;
 use crate::export::{self, Contents, Folder, Manifest};
 use crate::metrics::TrialRecord;
 use crate::report::Explanation;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, parse, to_ron};
 use crate::simulation::trace_trial;
 
 /// What `desim explain --help` says.
@@ -105,14 +105,16 @@ fn results(dir: &Path) -> Result<Manifest, Failure> {
 
 /// The scenario that `manifest` holds.
 fn scenario(manifest: &Manifest, dir: &Path) -> Result<Scenario, Failure> {
-    serde_json::from_value(manifest.scenario.clone()).or_else(|error| {
+    let place = dir.join("manifest.json").display().to_string();
+    let scenario: Scenario = serde_json::from_value(manifest.scenario.clone()).or_else(|error| {
         refuse(format!(
-            "the scenario in {} is of another version ({error}; desim {} there, {} now)",
-            dir.join("manifest.json").display(),
+            "the scenario in {place} is of another version ({error}; desim {} there, {} now)",
             manifest.version,
             env!("CARGO_PKG_VERSION")
         ))
-    })
+    })?;
+    // Somebody may have edited it: it must hold as any scenario file must.
+    Ok(parse(&place, &to_ron(&scenario), &[])?)
 }
 
 /// The digest that the trial had.

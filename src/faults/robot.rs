@@ -75,6 +75,8 @@ pub(super) struct RobotFault {
     hazard: KeyedStreams,
     join: KeyedStreams,
     cases: Vec<Case>,
+    /// The last control step that counted: at one instant it may be asked more than once.
+    counted: SimTime,
 }
 
 impl RobotFault {
@@ -134,6 +136,7 @@ impl RobotFault {
             hazard: streams.keyed(HAZARD),
             join: streams.keyed(JOIN),
             cases: (0..robots as u32).map(case).collect(),
+            counted: SimTime::ZERO,
         };
         for robot in 0..robots {
             fault.draw_threshold(robot);
@@ -160,12 +163,12 @@ impl RobotFault {
         }
     }
 
-    /// `robot` takes `role` at `now`.
-    pub fn enter(&mut self, now: SimTime, robot: ActorId, role: u8) {
+    /// `robot` takes `role` at `now`. When that makes it fail; `NEVER` if it does not.
+    pub fn enter(&mut self, now: SimTime, robot: ActorId, role: u8) -> SimTime {
         let case = &mut self.cases[robot.index()];
         let was_in_role = std::mem::replace(&mut case.in_role, self.roles[usize::from(role)]);
         let Trigger::OnJoin { probability, window } = self.trigger else {
-            return;
+            return SimTime::NEVER;
         };
         if !case.in_role {
             case.due = SimTime::NEVER;
@@ -177,11 +180,15 @@ impl RobotFault {
                 case.due = now + Span::from_secs(window.as_secs() * when);
             }
         }
+        case.due
     }
 
     /// Calls `changed` for each robot that recovers (`false`) or fails (`true`) at `now`, in order of their ids.
     pub fn advance(&mut self, now: SimTime, places: &[Vec2], mut changed: impl FnMut(ActorId, bool)) {
-        let is_step = now.as_nanos().is_multiple_of(self.control_period.as_nanos());
+        let is_step = now > self.counted && now.as_nanos().is_multiple_of(self.control_period.as_nanos());
+        if is_step {
+            self.counted = now;
+        }
         for (index, place) in places.iter().enumerate() {
             let robot = ActorId(index as u32);
             if self.cases[index].recovers <= now {

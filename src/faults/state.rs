@@ -151,7 +151,8 @@ impl Faults {
         faults
     }
 
-    /// When [`advance`](Self::advance) must be called next; `NEVER` if nothing can happen.
+    /// When [`advance`](Self::advance) must be called next; `NEVER` if nothing can happen. Nothing need happen then: a robot
+    /// that was to fail may have left its role.
     #[must_use]
     pub fn next(&self) -> SimTime {
         self.next
@@ -163,9 +164,8 @@ impl Faults {
     /// If the protocol has no such role.
     pub fn enter(&mut self, now: SimTime, robot: ActorId, role: u8) {
         for (_, fault) in &mut self.robots {
-            fault.enter(now, robot, role);
+            self.next = self.next.min(fault.enter(now, robot, role));
         }
-        self.plan();
     }
 
     /// Lets happen what is due at `now`, with the robots at `places`, and adds it to `changes`: by fault, then by robot.

@@ -119,6 +119,26 @@ fn who_fails_at_a_share_fails_at_the_same_time_at_a_greater_share_and_no_later_a
 }
 
 #[test]
+fn a_control_step_is_borne_once_however_often_faults_are_asked_at_its_instant() {
+    // A robot that joins and fails at the very instant of a control step has the faults asked there a second time.
+    let places = [Vec2::zeros(); 50];
+    let struck = |calls: u32| {
+        let mut faults = faults(&[fallible(1.0, 0.001)], 50);
+        for robot in 0..50 {
+            faults.enter(SimTime::ZERO, ActorId(robot), NETWORKER);
+        }
+        let mut changes = Vec::new();
+        while faults.next() <= secs(100.0) {
+            let now = faults.next();
+            (0..calls).for_each(|_| faults.advance(now, &places, &mut changes));
+        }
+        changes
+    };
+    assert!(!struck(1).is_empty());
+    assert_eq!(struck(1), struck(2));
+}
+
+#[test]
 fn a_robot_bears_hazard_only_in_its_roles() {
     let mut all = faults(&[fallible(1.0, 1.0)], 2);
     all.enter(secs(1.0), ActorId(1), WORKER);

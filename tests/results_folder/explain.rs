@@ -210,6 +210,20 @@ fn the_command_explains_finished_results_and_refuses_all_others() {
 }
 
 #[test]
+fn a_manifest_whose_scenario_cannot_be_run_is_refused_by_its_field() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("still.ron"), text("seed: 3")).unwrap();
+    desim(dir.path(), &["scenario", "still.ron", "--quiet", "--out", "there"]).success();
+    let path = dir.path().join("there/manifest.json");
+    let mut manifest: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    manifest["scenario"]["swarm"]["robots"] = 0.into();
+    fs::write(&path, manifest.to_string()).unwrap();
+    let refused = desim(dir.path(), &["explain", "there", "--trial", "0", "--robot", "0"]).code(2);
+    let error = String::from_utf8(refused.get_output().stderr.clone()).unwrap();
+    assert!(error.contains("0 is out of range for `swarm.robots`"), "{error}");
+}
+
+#[test]
 fn results_of_a_run_that_this_version_runs_otherwise_are_not_explained() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("still.ron"), text("seed: 3")).unwrap();

@@ -29,10 +29,10 @@ struct Sent {
     at: SimTime,
 }
 
-/// A lost copy, at its receiver.
+/// A lost copy, at its sender: what one frame loses lies together in memory.
 #[derive(Debug)]
 struct Lost {
-    sender: u32,
+    receiver: u32,
     sequence: u32,
     cause: LossCause,
 }
@@ -80,8 +80,8 @@ impl StatusLog {
     /// The copy of a status that was meant for `receiver` is lost.
     #[inline]
     pub fn lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {
-        self.lost[receiver.index()].new.push(Lost {
-            sender: sender.0,
+        self.lost[sender.index()].new.push(Lost {
+            receiver: receiver.0,
             sequence,
             cause,
         });
@@ -105,8 +105,8 @@ impl StatusLog {
             last = status.sequence;
         }
         let counts = |status: u32| is_newer(status) && last.wrapping_sub(status).cast_signed() >= 0;
-        let lost = self.lost[observer.index()].iter();
-        for copy in lost.filter(|copy| copy.sender == subject.0 && counts(copy.sequence)) {
+        let lost = self.lost[subject.index()].iter();
+        for copy in lost.filter(|copy| copy.receiver == observer.0 && counts(copy.sequence)) {
             missed.lost[copy.cause as usize] += 1;
         }
         let under_way = waiting.iter().map(|reception| &reception.frame);

@@ -17,6 +17,8 @@ pub struct Scorer {
     silences: Vec<Vec<(SimTime, SimTime)>>,
     /// By observer: whom it watches.
     pairs: Vec<Vec<Pair>>,
+    /// By subject: who watches it.
+    watchers: Vec<Vec<ActorId>>,
     tally: Tally,
 }
 
@@ -51,6 +53,7 @@ impl Scorer {
             health: vec![Health::WELL; robots],
             silences: vec![Vec::new(); robots],
             pairs: std::iter::repeat_with(Vec::new).take(robots).collect(),
+            watchers: vec![Vec::new(); robots],
             tally: Tally::default(),
         }
     }
@@ -107,6 +110,7 @@ impl Scorer {
         };
         pair.resume(now, self.is_able(observer, subject));
         self.pairs[observer.index()].push(pair);
+        self.watchers[subject.index()].push(observer);
     }
 
     fn suspect(&mut self, suspicion: Suspicion) {
@@ -144,9 +148,12 @@ impl Scorer {
                 Some(last) if health.sends => last.1 = now,
                 _ => silences.push((now, SimTime::NEVER)),
             }
-            for observer in (0..self.pairs.len() as u32).map(ActorId) {
+            let mut watchers = std::mem::take(&mut self.watchers[robot.index()]);
+            watchers.sort_unstable();
+            for &observer in &watchers {
                 self.subject_changes(now, observer, robot);
             }
+            self.watchers[robot.index()] = watchers;
         }
         if before.hears != health.hears {
             self.observer_changes(now, robot);
@@ -156,10 +163,7 @@ impl Scorer {
     /// `subject` fails to send, or sends again: to `observer` a mistake about it is one no longer.
     fn subject_changes(&mut self, now: SimTime, observer: ActorId, subject: ActorId) {
         let able = self.is_able(observer, subject);
-        let pairs = &mut self.pairs[observer.index()];
-        let Some(pair) = pairs.iter_mut().find(|pair| pair.subject == subject) else {
-            return;
-        };
+        let pair = find(&mut self.pairs, observer, subject);
         let was_monitored = pair.since.is_some();
         pair.settle(now, &mut self.tally);
         pair.mistaken = false;

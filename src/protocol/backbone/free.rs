@@ -18,13 +18,7 @@ pub fn velocity(view: &View<'_>) -> Vec2 {
     // Beyond the safe distance the cluster is out of the potential's reach: a spring brings the robot back (ours).
     let back = forces::stay_within(root, parameters.safe, parameters.spring_gain);
     let desired = forces::lennard_jones(root, parameters.lj_gain, parameters.lj_delta) + back + among_neighbours(view);
-    desired
-        + forces::obstacle(
-            desired,
-            view.proximity,
-            parameters.avoidance_range,
-            parameters.avoidance_gain,
-        )
+    desired + view.avoidance(desired, parameters.avoidance_range)
 }
 
 fn among_neighbours(view: &View<'_>) -> Vec2 {

@@ -26,13 +26,7 @@ pub fn velocity(view: &View<'_>) -> Vec2 {
         return Vec2::zeros();
     }
     let desired = forces::target(way, parameters.target_gain);
-    desired
-        + forces::obstacle(
-            desired,
-            view.proximity,
-            parameters.avoidance_range,
-            parameters.avoidance_gain,
-        )
+    desired + view.avoidance(desired, parameters.avoidance_range)
 }
 
 /// Midway between the directions of the two targets that the robot is between, at the critical distance from the root:

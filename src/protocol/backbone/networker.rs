@@ -305,7 +305,7 @@ impl Networker {
         } else {
             parameters.avoidance_range
         };
-        forces::obstacle(desired, view.proximity, range, parameters.avoidance_gain)
+        view.avoidance(desired, range)
     }
 
     /// The strands that it sends: to its child the way to the root, to its parent the way to the worker.

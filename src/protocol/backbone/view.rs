@@ -5,6 +5,7 @@ use std::rc::Rc;
 use crate::engine::ActorId;
 use crate::geometry::Vec2;
 
+use super::forces;
 use super::message::{Order, Role};
 use super::mission::{Mission, Parameters};
 use super::neighbours::{Neighbour, Neighbours};
@@ -91,6 +92,12 @@ impl<'a> View<'a> {
         } else {
             self.neighbours.get(robot).map(|known| known.position - self.position)
         }
+    }
+
+    /// What keeps it clear of bodies within `range` metres of its edge where it wants to go at `desired` (u^obstacle).
+    #[must_use]
+    pub fn avoidance(&self, desired: Vec2, range: f64) -> Vec2 {
+        forces::obstacle(desired, self.proximity, range, self.parameters().avoidance_gain)
     }
 
     /// Whether chain number `chain` is to be built or kept.

@@ -8,7 +8,7 @@ use super::forces;
 use super::free;
 use super::heal;
 use super::message::{Message, Strand};
-use super::mission::{Mission, Parameters};
+use super::mission::Mission;
 use super::recruit::{Recruiter, Slot};
 use super::view::View;
 
@@ -102,7 +102,7 @@ impl Worker {
         let kept = self.slots.iter().filter(|slot| slot.broken.is_none());
         let ties = kept.filter_map(|slot| view.way_to(slot.parent));
         let desired = heal::velocity(view, way, ties);
-        desired + avoidance(view, desired, view.parameters())
+        desired + avoidance(view, desired)
     }
 
     /// Makes for the target as far as the springs to its parents allow (paper eq. 10).
@@ -115,7 +115,7 @@ impl Worker {
         let open = forces::gate(pull.farthest, parameters.gate_opening(), parameters.gate);
         let to_target = forces::target(self.way_to_target(view), parameters.target_gain);
         let desired = pull.springs + to_target * open;
-        desired + avoidance(view, desired, parameters) * open
+        desired + avoidance(view, desired) * open
     }
 
     /// Comes home along its chains, and then waits like a free robot.
@@ -130,7 +130,7 @@ impl Worker {
             return free::velocity(view);
         }
         let desired = root * parameters.spring_gain;
-        desired + avoidance(view, desired, parameters)
+        desired + avoidance(view, desired)
     }
 
     fn pull_of_parents(&self, view: &View<'_>) -> Pull {
@@ -182,11 +182,6 @@ struct Pull {
     farthest: f64,
 }
 
-fn avoidance(view: &View<'_>, desired: Vec2, parameters: &Parameters) -> Vec2 {
-    forces::obstacle(
-        desired,
-        view.proximity,
-        parameters.backbone_avoidance_range,
-        parameters.avoidance_gain,
-    )
+fn avoidance(view: &View<'_>, desired: Vec2) -> Vec2 {
+    view.avoidance(desired, view.parameters().backbone_avoidance_range)
 }
