@@ -1,9 +1,17 @@
 //! One fault of links: which, when, and how much they lose.
 
 use super::config::{FaultConfig, LinksConfig, point};
-use super::state::LinkFaultKind;
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::Vec2;
+
+/// How links fail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LinkFaultKind {
+    /// A line splits the arena.
+    Partition,
+    /// Some links lose more.
+    Burst,
+}
 
 /// A robot and where it is.
 pub(super) type Placed = (ActorId, Vec2);

@@ -21,5 +21,6 @@ pub use config::{
     BurstConfig, ChosenConfig, Effect, FallibleConfig, FaultConfig, IntervalConfig, LastsConfig, LinksConfig,
     OnJoinConfig, PartitionConfig, PlannedConfig, RadiationConfig, RegionConfig, RobotsConfig, WhenConfig,
 };
+pub use link::LinkFaultKind;
 pub use rules::problems;
-pub use state::{Change, Faults, Health, LinkFaultKind, Subject};
+pub use state::{Change, Faults, Health, Subject};

@@ -3,7 +3,7 @@
 use rand::RngExt as _;
 
 use super::config::{Effect, FaultConfig};
-use super::link::LinkFault;
+use super::link::{LinkFault, LinkFaultKind};
 use super::robot::RobotFault;
 use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
 use crate::geometry::Vec2;
@@ -35,15 +35,6 @@ impl Health {
     pub const fn is_live(self) -> bool {
         self.sends && self.hears
     }
-}
-
-/// How links fail.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LinkFaultKind {
-    /// A line splits the arena.
-    Partition,
-    /// Some links lose more.
-    Burst,
 }
 
 /// What a fault befalls.
