@@ -208,7 +208,11 @@ impl Explanation {
         let words = format!(
             "The last status to arrive had done so at {heard_s:.3} s. In the {silence:.3} s since then, none arrived, though {sent}."
         );
-        let words = if statuses.is_empty() {
+        let words = if suspicion.cause == detection::Cause::Unanswered.name() {
+            format!(
+                "It went by probes, which were not answered in time, or by what others said of them. The last frame had arrived at {heard_s:.3} s; in the {silence:.3} s since then, {sent}."
+            )
+        } else if statuses.is_empty() {
             words.replace(", though", ":")
         } else {
             words

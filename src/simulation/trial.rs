@@ -79,8 +79,9 @@ fn run(
             setup.run(poses, robots, driver, stop)
         }
         ProtocolConfig::Heartbeat => {
-            let settings = Rc::new(Settings::new(&scenario.gossip, &scenario.detector, period));
-            let robots = poses.iter().map(|_| Heartbeat::new(Rc::clone(&settings))).collect();
+            let settings = Rc::new(Settings::new(&scenario.gossip, &scenario.detector, period, poses.len()));
+            let ids = (0..poses.len() as u32).map(ActorId);
+            let robots = ids.map(|id| Heartbeat::new(id, Rc::clone(&settings))).collect();
             setup.run(poses, robots, driver, stop)
         }
     }?;
@@ -99,6 +100,7 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         faults: scenario.faults.clone(),
         metrics: scenario.metrics.clone(),
         detector: scenario.detector.clone(),
+        status_interval: scenario.circumstances().status_interval,
         trace: None,
         mission: None,
     }

@@ -1,9 +1,9 @@
 //! Detectors that listen: each status puts off the instant at which its sender is suspected, and a rule says to when.
 
-use super::TIMER;
+use super::{Monitored, Sign, TIMER};
 use crate::engine::{ActorId, SimTime};
 use crate::protocol::row_index::RowIndex;
-use crate::protocol::{Note, Output, Reception};
+use crate::protocol::{Evidence, Note, Output, Reception};
 
 /// When silence becomes suspicious.
 pub trait Rule {
@@ -59,9 +59,18 @@ impl<R: Rule> Watch<R> {
         }
     }
 
-    /// Takes in a status; they come in order of arrival.
+    /// Takes in the statuses in `inbox`, which are in order of arrival.
     #[inline]
-    pub fn hear<M>(&mut self, status: &Reception<M>, output: &mut Output<M>) {
+    pub fn read<M: Monitored>(&mut self, inbox: &[Reception<M>], output: &mut Output<M>) {
+        for reception in inbox {
+            if matches!(reception.frame.message.sign(), Sign::Status) {
+                self.hear(reception, output);
+            }
+        }
+    }
+
+    #[inline]
+    fn hear<M>(&mut self, status: &Reception<M>, output: &mut Output<M>) {
         let Some(row) = self.index.get(status.frame.sender) else {
             self.watch(status, output);
             return;
@@ -111,6 +120,7 @@ impl<R: Rule> Watch<R> {
                     robot: row.id,
                     heard: row.heard,
                     sequence: row.sequence,
+                    evidence: Evidence::Silence,
                 });
             } else {
                 next = next.min(due);
