@@ -43,15 +43,14 @@ fn until_intervals_were_seen_the_assumed_one_counts() {
     }
 }
 
-/// With one heartbeat in five lost the intervals are longer, and Akka, which counts their deviation, is the more patient for
-/// it: nobody is suspected within ten minutes of 380 pairs.
+/// With one heartbeat in five lost, intervals have the mean 1/0.8 s and the deviation √0.2/0.8 s, for which Akka's φ is 8 after
+/// 1.25 + 3 + 5.2249 · 0.559 = 7.17 s: seven losses in a row, of which 380 pairs are expected to see 380 · 540 · 0.8 · 0.2⁷ = 2 in
+/// nine minutes, and with the window's own scatter a few more. A timeout as long as the silence without loss, 4.52 s, would
+/// err after four: 263 times.
 #[test]
 fn akka_learns_to_bear_the_loss_that_it_sees() {
     let record = heartbeats("PhiAccrual(dialect: Akka)", "Bernoulli(0.2)", 1.0, 600.0, "");
-    let late = record
-        .detection
-        .suspicions
-        .iter()
-        .filter(|suspicion| suspicion.at.as_secs() > 60.0);
-    assert_eq!(late.count(), 0);
+    let late = record.detection.suspicions.iter();
+    let late = late.filter(|suspicion| suspicion.at.as_secs() > 60.0).count();
+    assert!(late < 20, "{late} mistakes");
 }

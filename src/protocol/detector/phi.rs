@@ -263,6 +263,8 @@ impl Phi {
 
 impl Rule for Phi {
     type State = Window;
+    /// A long interval that the window forgets makes it less patient.
+    const HASTENS: bool = true;
 
     fn first<M>(&self, _: &Reception<M>) -> Window {
         let mut window = Window::default();

@@ -9,6 +9,8 @@ use crate::protocol::{Evidence, Note, Output, Reception};
 pub trait Rule {
     /// What it keeps of each robot beside the last arrival.
     type State;
+    /// Whether a status can bring the suspicion forward that an earlier one had put off.
+    const HASTENS: bool = false;
 
     /// Takes in the first status of a robot.
     fn first<M>(&self, status: &Reception<M>) -> Self::State;
@@ -88,6 +90,9 @@ impl<R: Rule> Watch<R> {
                 output.notes.push(Note::Trusts(row.id));
                 self.arm(due, output);
             }
+        } else if R::HASTENS {
+            let due = self.rule.due(row);
+            self.arm(due, output);
         }
     }
 

@@ -20,6 +20,8 @@ mod config;
 mod gossip;
 mod members;
 mod message;
+#[cfg(test)]
+mod tests;
 
 pub use config::SwimConfig;
 pub use message::{Call, Claim, News, Probe};
