@@ -20,6 +20,9 @@ pub struct Explanation {
     pub trial: u32,
     /// The robot.
     pub robot: u32,
+    /// What the robots' failure detector went by, in a sentence, where that needs words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rule: Option<String>,
     /// When it failed.
     pub outages: Vec<Outage>,
     /// When it was suspected, in order of time.
@@ -111,6 +114,7 @@ impl Explanation {
             scenario: scenario.to_owned(),
             trial: record.trial,
             robot: trace.robot.0,
+            rule: None,
             outages: record
                 .faults
                 .iter()
@@ -154,6 +158,9 @@ impl Explanation {
             "",
             &format!("Robot {robot} {times} in trial {trial} of {scenario}."),
         );
+        if let Some(rule) = &self.rule {
+            paragraph(text, "", rule);
+        }
         for outage in &self.outages {
             let until = outage
                 .until_s

@@ -43,6 +43,27 @@ pub struct Circumstances {
 }
 
 impl DetectorConfig {
+    /// What it goes by, in a sentence on the past; none for the timeout, which needs no words.
+    #[must_use]
+    pub fn words(&self) -> Option<String> {
+        match self {
+            Self::Timeout(_) => None,
+            Self::NfdS(config) => Some(format!(
+                "Robots ran NFD-S: one was suspected {} s after the first status that was missing should have been sent.",
+                config.shift.get()
+            )),
+            Self::PhiAccrual(config) => Some(format!(
+                "Robots ran φ-accrual as {:?} does: one was suspected when its silence made φ reach {}.",
+                config.dialect,
+                config.threshold.get()
+            )),
+            Self::Swim(_) => Some(
+                "Robots ran SWIM: one was suspected when it neither answered probes in time nor denied that it was down, or was not heard at all for long. Statuses only show whether two robots could hear each other."
+                    .to_owned(),
+            ),
+        }
+    }
+
     /// Whether robots that run it send messages of their own, on the topic `probe`.
     #[must_use]
     pub const fn sends(&self) -> bool {

@@ -80,7 +80,7 @@ mod tests {
         let messages: Vec<Vec<u32>> = (0..4)
             .map(|_| gossip.for_message(None).iter().map(|news| news.about.0).collect())
             .collect();
-        assert_eq!(messages, [vec![1, 2], vec![3, 1], vec![2, 3], vec![]]);
+        assert_eq!(messages, [vec![1, 2], vec![3, 1], vec![3, 2], vec![]]);
     }
 
     #[test]
