@@ -151,10 +151,8 @@ impl Detector {
 
 #[cfg(test)]
 mod tests {
-    use std::rc::Rc;
-
     use super::*;
-    use crate::protocol::{Frame, Topic};
+    use crate::protocol::Frame;
 
     const TIMEOUT_S: f64 = 2.5;
 
@@ -169,14 +167,13 @@ mod tests {
     fn status(sender: u32, sequence: u32, arrival_s: f64) -> Reception<()> {
         Reception {
             at: at(arrival_s),
-            frame: Rc::new(Frame {
+            frame: Frame {
                 sender: ActorId(sender),
                 sequence,
                 sent_at: SimTime::ZERO,
-                topic: Topic(0),
                 payload_bytes: 4,
                 message: (),
-            }),
+            },
             displacement: [0.0; 2],
         }
     }

@@ -128,10 +128,8 @@ impl StatusLog {
 
 #[cfg(test)]
 mod tests {
-    use std::rc::Rc;
-
     use super::*;
-    use crate::protocol::{Frame, Topic};
+    use crate::protocol::Frame;
 
     const OBSERVER: ActorId = ActorId(0);
     const SUBJECT: ActorId = ActorId(1);
@@ -143,14 +141,13 @@ mod tests {
     fn under_way(sequence: u32) -> Reception<()> {
         Reception {
             at: at(9.0),
-            frame: Rc::new(Frame {
+            frame: Frame {
                 sender: SUBJECT,
                 sequence,
                 sent_at: at(0.0),
-                topic: Topic(0),
                 payload_bytes: 4,
                 message: (),
-            }),
+            },
             displacement: [0.0; 2],
         }
     }

@@ -1,5 +1,7 @@
 //! What robots say: the paper's four topics (section 4.3).
 
+use std::rc::Rc;
+
 use crate::engine::ActorId;
 use crate::protocol;
 
@@ -200,6 +202,6 @@ pub struct Strand {
     /// The robot that the sender counts on as the next of the chain, by which the two verify that they are linked. The
     /// root, which is linked to whoever names it, names itself.
     pub next: ActorId,
-    /// The robots, the sender last.
-    pub robots: Vec<ActorId>,
+    /// The robots, the sender last: shared by all that hear of them.
+    pub robots: Rc<[ActorId]>,
 }
