@@ -15,7 +15,7 @@ pub mod control;
 pub mod detector;
 pub mod gossip;
 pub mod heartbeat;
-mod row_index;
+mod robot_table;
 
 /// Index of a topic in [`Protocol::TOPICS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -5,8 +5,10 @@ use std::cmp::Ordering;
 use crate::engine::SimTime;
 use crate::protocol::Reception;
 
-/// Frames on their way to one robot, and those that arrived since it last woke.
+/// Frames on their way to one robot, and those that arrived since it last woke. Aligned so that none lies across two cache
+/// lines: every copy of every frame reads one.
 #[derive(Debug)]
+#[repr(align(32))]
 pub struct Inbox<M> {
     waiting: Vec<Reception<M>>,
     /// No waiting frame arrives later than this.

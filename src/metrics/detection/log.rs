@@ -193,7 +193,11 @@ mod tests {
             }
             let missed = log.missed(at(6.5), [OBSERVER, SUBJECT], 0, &none);
             let lost = missed.lost[LossCause::Channel as usize];
-            assert_eq!(lost + missed.out_of_range, counted, "of 10, 20 … 60, sent at 1 s, 2 s … 6 s");
+            assert_eq!(
+                lost + missed.out_of_range,
+                counted,
+                "of 10, 20 … 60, sent at 1 s, 2 s … 6 s"
+            );
             assert_eq!(lost, if memory_s > 4.5 { 2 } else { 1 });
         }
     }
@@ -206,6 +210,9 @@ mod tests {
             log.lost(OBSERVER, SUBJECT, status, LossCause::Channel);
         }
         let kept = &log.senders[SUBJECT.index()];
-        assert!(kept.sent.len() <= 4 && kept.lost.len() <= 4, "one a second, kept for three at most");
+        assert!(
+            kept.sent.len() <= 4 && kept.lost.len() <= 4,
+            "one a second, kept for three at most"
+        );
     }
 }

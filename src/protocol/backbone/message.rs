@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use crate::engine::ActorId;
 use crate::protocol;
+use crate::protocol::detector::Monitored;
 
 /// What a robot is to the backbone (paper section 4.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,6 +43,12 @@ pub enum Message {
     ParentStrand(Strand),
     /// The robots from the worker to the sender.
     ChildStrand(Strand),
+}
+
+impl Monitored for Message {
+    fn is_status(&self) -> bool {
+        matches!(self, Self::Status(_))
+    }
 }
 
 /// What every robot says of itself.
