@@ -33,7 +33,7 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
         .poses
         .iter()
         .zip(0..)
-        .map(|(_, id)| Heartbeat::new(ActorId(id), Rc::clone(&settings)))
+        .map(|(_, id)| <Heartbeat>::new(ActorId(id), Rc::clone(&settings)))
         .collect();
     let record = setup
         .run(workload.poses.clone(), robots, driver, &CancellationToken::new())

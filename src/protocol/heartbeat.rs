@@ -1,14 +1,16 @@
-//! Heartbeats and status timeouts on their own: the workload on which failure detectors and drivers are measured.
+//! Heartbeats and a failure detector on their own: the workload on which detectors and drivers are measured.
 //!
-//! Every robot broadcasts a 4-byte status and believes that a neighbour is down when it has not heard it for the
-//! timeout. Robots stand still.
+//! Every robot broadcasts a 4-byte status, and its detector believes what it believes of those that it hears. Robots stand
+//! still.
 
+use std::convert::Infallible;
+use std::marker::PhantomData;
 use std::rc::Rc;
 
 use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
-use super::detector::{Circumstances, Detector, DetectorConfig, Monitored, Probe, Sign};
+use super::detector::{Carried, Circumstances, Detector, DetectorConfig, Monitored, Probe, Sign};
 use super::gossip::GossipConfig;
 use super::{CodecError, Input, Output, Protocol, Topic, Wake};
 use crate::engine::{ActorId, SimTime, Span};
@@ -45,39 +47,41 @@ pub struct Status {
     pub number: u32,
 }
 
-/// What robots say.
+/// What robots say; `P` carries what their failure detector says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Message {
+pub enum Message<P = Infallible> {
     /// I am alive.
     Status(Status),
     /// What the failure detector says.
-    Probe(Box<Probe>),
+    Probe(P),
 }
 
-impl Monitored for Message {
+impl<P: Carried> Monitored for Message<P> {
     #[inline]
     fn sign(&self) -> Sign<'_> {
         match self {
             Self::Status(_) => Sign::Status,
-            Self::Probe(probe) => Sign::Probe(probe),
+            Self::Probe(probe) => Sign::Probe(probe.probe()),
         }
     }
 
     fn probe(probe: Probe) -> Self {
-        Self::Probe(Box::new(probe))
+        Self::Probe(P::of(probe).expect("robots whose detector sends have messages for that"))
     }
 }
 
-/// One robot's heartbeat and what it believes of its neighbours.
+/// One robot's heartbeat and what it believes of its neighbours. Where its detector [sends](DetectorConfig::sends), `P` must
+/// be one that can carry that.
 #[derive(Debug)]
-pub struct Heartbeat {
+pub struct Heartbeat<P = Infallible> {
     settings: Rc<Settings>,
     control_steps: u64,
     sent: u32,
     detector: Detector,
+    carries: PhantomData<P>,
 }
 
-impl Heartbeat {
+impl<P> Heartbeat<P> {
     /// Robot `id`, which has heard nobody yet.
     #[must_use]
     pub fn new(id: ActorId, settings: Rc<Settings>) -> Self {
@@ -86,27 +90,29 @@ impl Heartbeat {
             settings,
             control_steps: 0,
             sent: 0,
+            carries: PhantomData,
         }
     }
 }
 
-impl Protocol for Heartbeat {
-    type Message = Message;
-    type Codec = MessageCodec;
+impl<P: Carried> Protocol for Heartbeat<P> {
+    type Message = Message<P>;
+    type Codec = MessageCodec<P>;
     const TOPICS: &'static [&'static str] = &["status", "probe"];
     const ROLES: &'static [&'static str] = &["robot"];
     const STATUS: Option<Topic> = Some(Topic(0));
     const PROBE: Option<Topic> = Some(Topic(1));
     const SENSES_PROXIMITY: bool = false;
 
-    fn topic(message: &Message) -> Topic {
+    #[inline]
+    fn topic(message: &Message<P>) -> Topic {
         Topic(match message {
             Message::Status(_) => 0,
             Message::Probe(_) => 1,
         })
     }
 
-    fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
+    fn step(&mut self, now: SimTime, input: &mut Input<Message<P>>, output: &mut Output<Message<P>>) {
         self.detector.read(now, &input.inbox, output);
         match input.wake {
             Wake::Timer(_) => self.detector.expire(now, &mut input.random, output),
@@ -126,28 +132,39 @@ impl Protocol for Heartbeat {
 const NUMBERS: u32 = 1 << 30;
 
 /// A status is its number in four bytes, big-endian; a probe is as its detector has it.
-#[derive(Debug, Default)]
-pub struct MessageCodec;
+#[derive(Debug)]
+pub struct MessageCodec<P>(PhantomData<P>);
 
-impl Encoder<Message> for MessageCodec {
+impl<P> Default for MessageCodec<P> {
+    fn default() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<P: Carried> Encoder<Message<P>> for MessageCodec<P> {
     type Error = CodecError;
 
-    fn encode(&mut self, message: Message, bytes: &mut BytesMut) -> Result<(), CodecError> {
+    fn encode(&mut self, message: Message<P>, bytes: &mut BytesMut) -> Result<(), CodecError> {
         match message {
             Message::Status(status) => bytes.put_u32(status.number),
-            Message::Probe(probe) => probe.encode(bytes),
+            Message::Probe(probe) => probe.probe().encode(bytes),
         }
         Ok(())
     }
 }
 
-impl Decoder for MessageCodec {
-    type Item = Message;
+impl<P: Carried> Decoder for MessageCodec<P> {
+    type Item = Message<P>;
     type Error = CodecError;
 
-    fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<Message>, CodecError> {
-        if bytes.first().is_some_and(|first| Probe::begins_with(*first)) {
-            return Probe::decode(bytes).map(|probe| Some(Message::probe(probe)));
+    fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<Message<P>>, CodecError> {
+        if let Some(first) = bytes.first().copied().filter(|first| Probe::begins_with(*first)) {
+            let refused = CodecError::Unknown {
+                field: "message kind",
+                value: first,
+            };
+            let probe = P::of(Probe::decode(bytes)?).ok_or(refused)?;
+            return Ok(Some(Message::Probe(probe)));
         }
         if bytes.len() < 4 {
             return Ok(None);
@@ -155,5 +172,33 @@ impl Decoder for MessageCodec {
         Ok(Some(Message::Status(Status {
             number: bytes.get_u32(),
         })))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::detector::Call;
+
+    #[test]
+    fn a_message_costs_a_reception_no_more_than_its_status_where_no_detector_sends() {
+        assert_eq!(size_of::<Message>(), size_of::<Status>());
+    }
+
+    #[test]
+    fn statuses_and_probes_decode_to_themselves_and_probes_only_where_they_are_carried() {
+        let probe = Probe {
+            call: Call::Ping { to: ActorId(3) },
+            number: 7,
+            news: Vec::new(),
+        };
+        let status = Status { number: NUMBERS - 1 };
+        for message in [Message::Status(status), Message::Probe(Rc::new(probe))] {
+            let mut bytes = BytesMut::new();
+            MessageCodec::default().encode(message.clone(), &mut bytes).unwrap();
+            let alone = MessageCodec::<Infallible>::default().decode(&mut bytes.clone());
+            assert_eq!(alone.is_ok(), matches!(message, Message::Status(_)));
+            assert_eq!(MessageCodec::default().decode(&mut bytes).unwrap(), Some(message));
+        }
     }
 }

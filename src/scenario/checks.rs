@@ -124,7 +124,7 @@ fn sections(scenario: &Scenario) -> Vec<Problem> {
     let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
     let (protocol, roles) = match &scenario.protocol {
         ProtocolConfig::Backbone(backbone) => (backbone.problems(swarm.robots, radio.range.get()), Backbone::ROLES),
-        ProtocolConfig::Heartbeat => (Vec::new(), Heartbeat::ROLES),
+        ProtocolConfig::Heartbeat => (Vec::new(), <Heartbeat>::ROLES),
     };
     let faults = faults::problems(&scenario.faults, swarm.robots, roles);
     let around = ["swarm.robots", "arena.size", "motion.body_radius"];

@@ -1,5 +1,7 @@
 //! What robots say: the paper's four topics (section 4.3), and what their failure detectors say.
 
+use std::rc::Rc;
+
 use crate::engine::ActorId;
 use crate::protocol;
 use crate::protocol::detector::{Monitored, Probe, Sign};
@@ -42,7 +44,7 @@ pub enum Message {
     /// The robots from the worker to the sender.
     ChildStrand(Strand),
     /// What the failure detector says.
-    Probe(Box<Probe>),
+    Probe(Rc<Probe>),
 }
 
 impl Monitored for Message {
@@ -56,7 +58,7 @@ impl Monitored for Message {
     }
 
     fn probe(probe: Probe) -> Self {
-        Self::Probe(Box::new(probe))
+        Self::Probe(Rc::new(probe))
     }
 }
 
@@ -218,6 +220,6 @@ pub struct Strand {
     /// The robot that the sender counts on as the next of the chain, by which the two verify that they are linked. The
     /// root, which is linked to whoever names it, names itself.
     pub next: ActorId,
-    /// The robots, the sender last.
-    pub robots: Vec<ActorId>,
+    /// The robots, the sender last: shared by all that hear of them.
+    pub robots: Rc<[ActorId]>,
 }

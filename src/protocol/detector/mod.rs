@@ -18,6 +18,9 @@ pub use nfd_s::NfdSConfig;
 pub use phi::{DialectConfig, DialectSetting, PhiAccrualConfig};
 pub use swim::{Call, Claim, News, Probe, SwimConfig};
 
+use std::convert::Infallible;
+use std::rc::Rc;
+
 use rand_philox::Philox;
 
 use super::{Output, Reception, TimerId};
@@ -38,6 +41,36 @@ pub trait Monitored {
 
     /// A message that carries what the detector says.
     fn probe(probe: Probe) -> Self;
+}
+
+/// How a message carries what a detector says. Protocols that are measured for their speed have messages without that, for
+/// scenarios whose detector says nothing: `Infallible` carries nothing and takes no room.
+pub trait Carried: Clone + std::fmt::Debug + 'static {
+    /// Carries `probe`, if that can be.
+    fn of(probe: Probe) -> Option<Self>;
+
+    /// What it carries.
+    fn probe(&self) -> &Probe;
+}
+
+impl Carried for Rc<Probe> {
+    fn of(probe: Probe) -> Option<Self> {
+        Some(Self::new(probe))
+    }
+
+    fn probe(&self) -> &Probe {
+        self
+    }
+}
+
+impl Carried for Infallible {
+    fn of(_: Probe) -> Option<Self> {
+        None
+    }
+
+    fn probe(&self) -> &Probe {
+        match *self {}
+    }
 }
 
 /// What a message is to a failure detector.
@@ -124,11 +157,9 @@ impl Detector {
 
 #[cfg(test)]
 mod tests {
-    use std::rc::Rc;
-
     use super::*;
     use crate::engine::Span;
-    use crate::protocol::{Evidence, Frame, Note, Topic};
+    use crate::protocol::{Evidence, Frame, Note};
     use crate::quantity::Positive;
 
     const TIMEOUT_S: f64 = 2.5;
@@ -166,14 +197,13 @@ mod tests {
     fn status(sender: u32, sequence: u32, arrival_s: f64) -> [Reception<Alive>; 1] {
         [Reception {
             at: at(arrival_s),
-            frame: Rc::new(Frame {
+            frame: Frame {
                 sender: ActorId(sender),
                 sequence,
                 sent_at: SimTime::ZERO,
-                topic: Topic(0),
                 payload_bytes: 4,
                 message: Alive,
-            }),
+            },
             displacement: [0.0; 2],
         }]
     }

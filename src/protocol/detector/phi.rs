@@ -273,7 +273,7 @@ impl Rule for Phi {
     }
 
     fn next<M>(&self, row: &mut Row<Window>, status: &Reception<M>) {
-        let interval = status.at.since(row.heard);
+        let interval = status.at.since(row.heard());
         let was_trusted = self.due(row) > status.at;
         let counts = match self.dialect {
             DialectConfig::Chitchat if !was_trusted => return self.begin(&mut row.state),
@@ -286,7 +286,7 @@ impl Rule for Phi {
     }
 
     fn due(&self, row: &Row<Window>) -> SimTime {
-        row.heard + row.state.silence
+        row.heard() + row.state.silence
     }
 }
 

@@ -18,6 +18,6 @@ impl Rule for Timeout {
 
     #[inline]
     fn due(&self, row: &Row<()>) -> SimTime {
-        row.heard + self.0
+        row.heard() + self.0
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Monitored, Sign, TIMER};
 use crate::engine::{ActorId, SimTime};
-use crate::protocol::row_index::RowIndex;
+use crate::protocol::robot_table::{RobotRow, RobotTable};
 use crate::protocol::{Evidence, Note, Output, Reception};
 
 /// When silence becomes suspicious.
@@ -29,9 +29,8 @@ pub trait Rule {
 #[derive(Debug)]
 pub struct Watch<R: Rule> {
     rule: R,
-    /// Robots ever heard, a row each.
-    rows: Vec<Row<R::State>>,
-    index: RowIndex,
+    /// Robots ever heard.
+    rows: RobotTable<Row<R::State>>,
     /// When the timer fires: never later than the earliest suspicion. It is checked then and set again, so that an arrival
     /// costs a store and not a timer.
     armed: SimTime,
@@ -43,11 +42,51 @@ pub struct Row<S> {
     id: ActorId,
     /// The newest of its frames that arrived.
     sequence: u32,
-    /// When the last status arrived.
-    pub heard: SimTime,
-    suspected: bool,
+    heard: LastHeard,
     /// What the rule keeps of it.
     pub state: S,
+}
+
+/// When a robot was last heard, and whether it has come to be suspected since. One word: what an arrival costs in a large
+/// swarm is the memory that it has to wait for.
+#[derive(Clone, Copy, Debug)]
+struct LastHeard(u64);
+
+impl LastHeard {
+    /// The bit that no instant of a run reaches, 292 years from its start.
+    const SUSPECTED: u64 = 1 << 63;
+
+    fn at(at: SimTime) -> Self {
+        Self(at.as_nanos() & !Self::SUSPECTED)
+    }
+
+    fn instant(self) -> SimTime {
+        SimTime::from_nanos(self.0 & !Self::SUSPECTED)
+    }
+
+    fn is_suspected(self) -> bool {
+        self.0 & Self::SUSPECTED != 0
+    }
+
+    fn suspect(&mut self) {
+        self.0 |= Self::SUSPECTED;
+    }
+}
+
+impl<S> RobotRow for Row<S> {
+    #[inline]
+    fn robot(&self) -> ActorId {
+        self.id
+    }
+}
+
+impl<S> Row<S> {
+    /// When the last status arrived.
+    #[inline]
+    #[must_use]
+    pub fn heard(&self) -> SimTime {
+        self.heard.instant()
+    }
 }
 
 impl<R: Rule> Watch<R> {
@@ -55,8 +94,7 @@ impl<R: Rule> Watch<R> {
     pub fn new(rule: R) -> Self {
         Self {
             rule,
-            rows: Vec::new(),
-            index: RowIndex::default(),
+            rows: RobotTable::default(),
             armed: SimTime::NEVER,
         }
     }
@@ -73,20 +111,21 @@ impl<R: Rule> Watch<R> {
 
     #[inline]
     fn hear<M>(&mut self, status: &Reception<M>, output: &mut Output<M>) {
-        let Some(row) = self.index.get(status.frame.sender) else {
+        let Some(row) = self.rows.get_mut(status.frame.sender) else {
             self.watch(status, output);
             return;
         };
-        let row = &mut self.rows[row];
         self.rule.next(row, status);
-        row.heard = status.at;
+        let was_suspected = row.heard.is_suspected();
+        row.heard = LastHeard::at(status.at);
         if status.frame.sequence.wrapping_sub(row.sequence).cast_signed() > 0 {
             row.sequence = status.frame.sequence;
         }
-        if row.suspected {
+        if was_suspected {
             let due = self.rule.due(row);
-            if due > status.at {
-                row.suspected = false;
+            if due <= status.at {
+                row.heard.suspect();
+            } else {
                 output.notes.push(Note::Trusts(row.id));
                 self.arm(due, output);
             }
@@ -102,13 +141,11 @@ impl<R: Rule> Watch<R> {
         let row = Row {
             id,
             sequence: status.frame.sequence,
-            heard: status.at,
-            suspected: false,
+            heard: LastHeard::at(status.at),
             state: self.rule.first(status),
         };
         let due = self.rule.due(&row);
-        self.index.set(id, self.rows.len());
-        self.rows.push(row);
+        self.rows.add(row);
         output.notes.push(Note::Watches(id));
         self.arm(due, output);
     }
@@ -117,13 +154,13 @@ impl<R: Rule> Watch<R> {
     pub fn expire<M>(&mut self, now: SimTime, output: &mut Output<M>) {
         self.armed = SimTime::NEVER;
         let mut next = SimTime::NEVER;
-        for row in self.rows.iter_mut().filter(|row| !row.suspected) {
+        for row in self.rows.iter_mut().filter(|row| !row.heard.is_suspected()) {
             let due = self.rule.due(row);
             if due <= now {
-                row.suspected = true;
+                row.heard.suspect();
                 output.notes.push(Note::Suspects {
                     robot: row.id,
-                    heard: row.heard,
+                    heard: row.heard(),
                     sequence: row.sequence,
                     evidence: Evidence::Silence,
                 });
@@ -138,8 +175,8 @@ impl<R: Rule> Watch<R> {
 
     /// When `robot` came to be suspected; `NEVER` if it is not.
     pub fn suspected_since(&self, robot: ActorId) -> SimTime {
-        let row = self.index.get(robot).map(|row| &self.rows[row]);
-        row.filter(|row| row.suspected)
+        let row = self.rows.get(robot);
+        row.filter(|row| row.heard.is_suspected())
             .map_or(SimTime::NEVER, |row| self.rule.due(row))
     }
 

@@ -5,7 +5,7 @@ use rand_philox::Philox;
 
 use super::message::{Claim, News};
 use crate::engine::{ActorId, SimTime};
-use crate::protocol::row_index::RowIndex;
+use crate::protocol::robot_table::{RobotRow, RobotTable};
 use crate::protocol::{Evidence, Note, Output, Reception};
 
 /// A robot that was heard at some time.
@@ -32,6 +32,12 @@ pub enum Belief {
     Suspected(SimTime),
     /// It is down, since then.
     Down(SimTime),
+}
+
+impl RobotRow for Member {
+    fn robot(&self) -> ActorId {
+        self.id
+    }
 }
 
 impl Member {
@@ -68,10 +74,9 @@ impl Member {
 /// All members, and the order in which they are probed.
 #[derive(Debug, Default)]
 pub struct Members {
-    rows: Vec<Member>,
-    index: RowIndex,
-    /// Rows that are still to be probed in this round, the next one last.
-    round: Vec<usize>,
+    rows: RobotTable<Member>,
+    /// Those that are still to be probed in this round, the next one last.
+    round: Vec<ActorId>,
 }
 
 impl Members {
@@ -79,9 +84,8 @@ impl Members {
     pub fn hear<M>(&mut self, frame: &Reception<M>, output: &mut Output<M>) -> bool {
         let id = frame.frame.sender;
         let sequence = frame.frame.sequence;
-        let Some(row) = self.index.get(id) else {
-            self.index.set(id, self.rows.len());
-            self.rows.push(Member {
+        let Some(member) = self.rows.get_mut(id) else {
+            self.rows.add(Member {
                 id,
                 incarnation: 0,
                 belief: Belief::Alive,
@@ -91,7 +95,6 @@ impl Members {
             output.notes.push(Note::Watches(id));
             return true;
         };
-        let member = &mut self.rows[row];
         member.heard = frame.at;
         if sequence.wrapping_sub(member.sequence).cast_signed() > 0 {
             member.sequence = sequence;
@@ -108,12 +111,12 @@ impl Members {
 
     /// What is known of `robot`.
     pub fn get(&self, robot: ActorId) -> Option<&Member> {
-        self.index.get(robot).map(|row| &self.rows[row])
+        self.rows.get(robot)
     }
 
     /// The same, to be changed.
     pub fn get_mut(&mut self, robot: ActorId) -> Option<&mut Member> {
-        self.index.get(robot).map(|row| &mut self.rows[row])
+        self.rows.get_mut(robot)
     }
 
     /// All of them.
@@ -132,14 +135,13 @@ impl Members {
             return None;
         }
         loop {
-            let Some(row) = self.round.pop() else {
-                self.round.extend(0..self.rows.len());
+            let Some(robot) = self.round.pop() else {
+                self.round.extend(self.rows.iter().map(|member| member.id));
                 shuffle(&mut self.round, random);
                 continue;
             };
-            let member = &self.rows[row];
-            if !member.is_down() {
-                return Some(member.id);
+            if self.get(robot).is_some_and(|member| !member.is_down()) {
+                return Some(robot);
             }
         }
     }

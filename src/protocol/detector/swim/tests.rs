@@ -1,9 +1,7 @@
 //! One robot's side of SWIM, handed frames one by one.
 
-use std::rc::Rc;
-
 use super::*;
-use crate::protocol::{Frame, Note, Topic};
+use crate::protocol::{Frame, Note};
 use crate::quantity::{NonNegative, Positive};
 
 const ME: ActorId = ActorId(0);
@@ -88,14 +86,13 @@ impl Bench {
         self.sequence += 1;
         let reception = Reception {
             at: at(seconds),
-            frame: Rc::new(Frame {
+            frame: Frame {
                 sender,
                 sequence: self.sequence,
                 sent_at: at(seconds),
-                topic: Topic(0),
                 payload_bytes: 4,
                 message,
-            }),
+            },
             displacement: [0.0; 2],
         };
         self.act(|swim, output| swim.read(at(seconds), &[reception], output));
