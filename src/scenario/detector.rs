@@ -3,15 +3,16 @@
 use super::Scenario;
 use super::checks::Problem;
 use crate::protocol::control::WakeConfig;
-use crate::protocol::detector::{DetectorConfig, SwimConfig};
+use crate::protocol::detector::{DetectorConfig, NfdSConfig, SwimConfig};
 
 /// What is wrong with the detector among the other settings.
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
-    let answers = match &scenario.detector {
+    let own = match &scenario.detector {
+        DetectorConfig::NfdS(nfd_s) => freshness(scenario, nfd_s),
         DetectorConfig::Swim(swim) => answers(scenario, swim),
-        DetectorConfig::Timeout(_) | DetectorConfig::NfdS(_) | DetectorConfig::PhiAccrual(_) => None,
+        DetectorConfig::Timeout(_) | DetectorConfig::PhiAccrual(_) => None,
     };
-    pauses(scenario).into_iter().chain(answers).collect()
+    pauses(scenario).into_iter().chain(own).collect()
 }
 
 /// The pause from one status to the next must not be suspicious.
@@ -29,6 +30,18 @@ fn pauses(scenario: &Scenario) -> Option<Problem> {
         );
         let help = format!("{help}, which is rounded up to whole control periods");
         Problem::new("detector", message, help).with(&["gossip.status.interval", "control.period"])
+    })
+}
+
+/// A status must arrive before its freshness point.
+fn freshness(scenario: &Scenario, nfd_s: &NfdSConfig) -> Option<Problem> {
+    let (shift, latency) = (nfd_s.shift.get(), scenario.radio.latency.mean());
+    (latency >= shift).then(|| {
+        let message = format!(
+            "most statuses would come too late to count: they take {latency} s on average, and count {shift} s after they were sent"
+        );
+        let help = "make `detector`'s `shift` longer, or `radio.latency` shorter";
+        Problem::new("detector", message, help).with(&["radio.latency"])
     })
 }
 

@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use desim::metrics::detection::{Cause, FailureOutcome, Verdict};
+use desim::protocol::detector::SwimConfig;
 
 use super::{assert_near, heartbeats, mean_and_error, swarm};
 
@@ -24,7 +25,11 @@ fn a_probe_fails_by_loss_as_often_as_its_closed_form_says() {
         (0.2, 1, 0.2125),
         (0.1, 0, 0.19),
     ] {
-        let closed_form = (1.0 - (1.0 - p).powi(2)) * (1.0 - (1.0 - p).powi(4)).powi(k);
+        let swim = SwimConfig {
+            indirect_checks: k,
+            ..SwimConfig::default()
+        };
+        let closed_form = swim.probe_failure(p);
         assert!((closed_form - expected).abs() < 5e-5, "{closed_form}");
         let seconds = 500.0;
         let detector = PROBES_ALONE.replace("max_", &format!("indirect_checks: {k}, max_"));
@@ -61,11 +66,11 @@ fn a_probe_fails_by_loss_as_often_as_its_closed_form_says() {
 fn a_failed_robot_is_first_probed_in_the_period_that_the_closed_form_says() {
     const ROBOTS: u32 = 30;
     let others = f64::from(ROBOTS - 1);
-    let published = 1.0 / (1.0 - (1.0 - 1.0 / others).powf(others));
+    let published = SwimConfig::first_detection_periods(ROBOTS as usize);
     let in_turns: f64 = (0..ROBOTS).map(|w| (1.0 - f64::from(w) / others).powf(others)).sum();
     assert!((in_turns - published).abs() < 0.02);
-    let of = |robots: f64| 1.0 / (1.0 - (1.0 - 1.0 / (robots - 1.0)).powf(robots - 1.0));
-    assert!((of(100.0) - 1.5773).abs() < 5e-5 && (of(1e9) - 1.582).abs() < 5e-4);
+    assert!((SwimConfig::first_detection_periods(100) - 1.5773).abs() < 5e-5);
+    assert!((SwimConfig::first_detection_periods(1_000_000) - 1.582).abs() < 5e-4);
 
     // Robots fall silent one after the other, each for 12 s, at all phases of the periods.
     let failures: Vec<String> = (0..50)

@@ -68,12 +68,29 @@ impl SwimConfig {
         u32::from(self.retransmit_mult) * scale as u32
     }
 
-    /// From a failure until it is known, on average: somebody pings the failed robot in the middle of period number
-    /// 1/(1 − 1/e) after it, half a period early on average, finds an interval later that it does not answer, and then the
-    /// suspicion has to run out.
+    /// The probability that a probe of a robot that is well fails, each message being lost on its own with probability `loss`:
+    /// the ping or its acknowledgement is lost, and so is one of four messages on each way through others, if there are so
+    /// many, (1 − (1−p)²) (1 − (1−p)⁴)ᵏ.
+    #[must_use]
+    pub fn probe_failure(&self, loss: f64) -> f64 {
+        let arrives = 1.0 - loss;
+        (1.0 - arrives.powi(2)) * (1.0 - arrives.powi(4)).powi(self.indirect_checks.into())
+    }
+
+    /// The mean number of the period in which a failed robot is first probed by anybody, in a swarm of `robots` in which all
+    /// know each other and draw whom they probe: 1/(1 − (1 − 1/(N−1))^(N−1)), for many robots e/(e−1). Taking turns, as they do,
+    /// makes it less by a little.
+    #[must_use]
+    pub fn first_detection_periods(robots: usize) -> f64 {
+        let others = robots.max(2) as f64 - 1.0;
+        1.0 / (1.0 - (1.0 - 1.0 / others).powf(others))
+    }
+
+    /// From a failure until it is known, on average: somebody pings the failed robot half a period before the end of the one
+    /// in which it is first probed, finds an interval later that it does not answer, and then the suspicion has to run out.
     pub(in super::super) fn usual_silence(&self, robots: usize) -> Span {
-        let first = 1.0 / (1.0 - (-1.0_f64).exp());
-        Span::from_secs((first - 0.5 + 1.0) * self.probe_interval.get()) + self.suspicion_timeout(robots)
+        let periods = Self::first_detection_periods(robots) - 0.5 + 1.0;
+        Span::from_secs(periods * self.probe_interval.get()) + self.suspicion_timeout(robots)
     }
 
     /// From a robot's last frame until it is suspected, at most: awareness apart, it counts as out of range by then.

@@ -288,7 +288,7 @@ impl Swim {
     }
 
     fn doubt_itself(&mut self) {
-        self.awareness = (self.awareness + 1).min(self.max_awareness - 1);
+        self.awareness = (self.awareness + 1).min(self.max_awareness.saturating_sub(1));
     }
 
     /// Does what `sender` asks, if it asks this robot, and takes in what it answers.
