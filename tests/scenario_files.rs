@@ -348,7 +348,7 @@ fn the_mistake_of_a_probe_that_nobody_can_answer_in_time() {
 
 #[test]
 fn the_mistake_of_no_time_for_answers_through_others() {
-    insta::assert_snapshot!(refused(&["detector=Swim(probe_interval: 0.5, probe_timeout: 0.3)"]));
+    insta::assert_snapshot!(refused(&["detector=Swim(probe_interval: 0.9, probe_timeout: 0.4)"]));
 }
 
 #[test]

@@ -53,8 +53,8 @@ fn answers(scenario: &Scenario, swim: &SwimConfig) -> Option<Problem> {
     };
     let latency = scenario.radio.latency.mean();
     let (interval, timeout) = (swim.probe_interval.get(), swim.probe_timeout.get());
-    let direct = period + 2.0 * latency;
-    let through_others = 3.0 * period + 4.0 * latency;
+    let direct = in_micros(period + 2.0 * latency);
+    let through_others = in_micros(3.0 * period + 4.0 * latency);
     let also = ["control.period", "control.wake", "radio.latency"];
     if direct >= timeout {
         let message = format!(
@@ -63,7 +63,7 @@ fn answers(scenario: &Scenario, swim: &SwimConfig) -> Option<Problem> {
         let help = "make `probe_timeout` longer, or `control.period` shorter";
         return Some(Problem::new("detector", message, help).with(&also));
     }
-    let left = interval - timeout;
+    let left = in_micros(interval - timeout);
     (swim.indirect_checks > 0 && left > 0.0 && through_others >= left).then(|| {
         let message = format!(
             "no answer through others would come in time: it takes up to {through_others} s, and `probe_timeout` leaves {left} s of the `probe_interval`"
@@ -71,4 +71,9 @@ fn answers(scenario: &Scenario, swim: &SwimConfig) -> Option<Problem> {
         let help = "make `probe_interval` longer, or `control.period` shorter, or `indirect_checks` 0";
         Problem::new("detector", message, help).with(&also)
     })
+}
+
+/// Seconds rounded to whole microseconds, as a reader would add them up.
+fn in_micros(seconds: f64) -> f64 {
+    (seconds * 1e6).round() / 1e6
 }
