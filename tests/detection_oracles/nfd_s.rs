@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use desim::engine::SimTime;
 use desim::metrics::TrialRecord;
 use desim::metrics::detection::FailureOutcome;
 use desim::protocol::detector::{DetectorConfig, Link, NfdSConfig, Quality, nfd_s_quality};
@@ -24,7 +25,7 @@ fn assert_quality(what: &str, record: &TrialRecord, expected: &Quality) {
     for suspicion in &record.detection.suspicions {
         let (since, until) = (
             suspicion.at.as_secs(),
-            suspicion.until.map_or(SECONDS, |until| until.as_secs()),
+            suspicion.until.map_or(SECONDS, SimTime::as_secs),
         );
         let pair = mistakes.entry((suspicion.observer, suspicion.subject)).or_default();
         pair.0 += f64::from(since >= BEGIN);

@@ -218,7 +218,11 @@ fn a_suspicion_by_probes_is_told_as_one() {
     desim(dir.path(), &["scenario", "still.ron", "--quiet", "--out", "there"]).success();
     let told = desim(dir.path(), &["explain", "there", "--trial", "0", "--robot", "1"]).success();
     let told = String::from_utf8(told.get_output().stdout.clone()).unwrap();
-    for words in ["Robots ran SWIM: one was", "mistake       unanswered", "It went by probes, which"] {
+    for words in [
+        "Robots ran SWIM: one was",
+        "mistake       unanswered",
+        "It went by probes, which",
+    ] {
         assert!(told.contains(words), "{words:?} not in {told}");
     }
 }

@@ -234,10 +234,11 @@ impl Scorer {
 /// What a suspicion of a robot that was well was due to. Who goes by probes does not go by statuses: these only tell whether
 /// the two could hear each other.
 fn cause(missed: &Missed, evidence: Evidence) -> Cause {
-    match (evidence, missed.cause()) {
-        (Evidence::Silence, cause) => cause,
-        (Evidence::Probes, cause @ (Cause::OutOfRange | Cause::Lost(LossCause::ReceiverDown))) => cause,
-        (Evidence::Probes, _) => Cause::Unanswered,
+    let cause = missed.cause();
+    let hindered = matches!(cause, Cause::OutOfRange | Cause::Lost(LossCause::ReceiverDown));
+    match evidence {
+        Evidence::Probes if !hindered => Cause::Unanswered,
+        Evidence::Probes | Evidence::Silence => cause,
     }
 }
 

@@ -244,7 +244,7 @@ mod tests {
         );
         assert!(!detector.suspects(ActorId(3)));
         let expired = answer(&mut detector, |d, out| {
-            d.expire(at(4.25), &mut Philox::from_u64_seed(1), out)
+            d.expire(at(4.25), &mut Philox::from_u64_seed(1), out);
         });
         assert_eq!(expired, (vec![suspicion(3, 1.75, 1)], None));
         assert!(detector.suspects(ActorId(3)) && !detector.suspects(ActorId(4)));
@@ -256,7 +256,7 @@ mod tests {
         let mut detector = detector();
         answer(&mut detector, |d, out| d.read(at(9.0), &status(3, 0, 1.0), out));
         answer(&mut detector, |d, out| {
-            d.expire(at(3.5), &mut Philox::from_u64_seed(1), out)
+            d.expire(at(3.5), &mut Philox::from_u64_seed(1), out);
         });
         let again = answer(&mut detector, |d, out| d.read(at(9.0), &status(3, 7, 5.0), out));
         assert_eq!(again, (vec![Note::Trusts(ActorId(3))], Some(at(7.5))));
@@ -268,14 +268,14 @@ mod tests {
         let mut detector = detector();
         for (sequence, arrival) in [(0, 1.0), (2, 1.2), (1, 1.3)] {
             answer(&mut detector, |d, out| {
-                d.read(at(9.0), &status(3, sequence, arrival), out)
+                d.read(at(9.0), &status(3, sequence, arrival), out);
             });
         }
         answer(&mut detector, |d, out| {
-            d.expire(at(3.5), &mut Philox::from_u64_seed(1), out)
+            d.expire(at(3.5), &mut Philox::from_u64_seed(1), out);
         });
         let expired = answer(&mut detector, |d, out| {
-            d.expire(at(3.8), &mut Philox::from_u64_seed(1), out)
+            d.expire(at(3.8), &mut Philox::from_u64_seed(1), out);
         });
         assert_eq!(expired, (vec![suspicion(3, 1.3, 2)], None));
     }

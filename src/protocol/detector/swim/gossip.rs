@@ -76,7 +76,9 @@ mod tests {
     #[test]
     fn each_piece_is_sent_so_many_times_the_least_sent_first() {
         let mut gossip = Gossip::new(2, 2);
-        [1, 2, 3].into_iter().for_each(|robot| gossip.spread(news(robot, 0)));
+        for robot in [1, 2, 3] {
+            gossip.spread(news(robot, 0));
+        }
         let messages: Vec<Vec<u32>> = (0..4)
             .map(|_| gossip.for_message(None).iter().map(|news| news.about.0).collect())
             .collect();

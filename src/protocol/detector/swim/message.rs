@@ -93,7 +93,9 @@ impl Probe {
             }
             Call::Request { to, target } => {
                 bytes.put_slice(&[REQUEST, to.len() as u8]);
-                to.iter().for_each(|robot| put(robot.0, bytes));
+                for robot in to {
+                    put(robot.0, bytes);
+                }
                 put(target.0, bytes);
             }
             Call::Ack { to } => {

@@ -114,11 +114,11 @@ impl Bench {
 
     /// Whom it pinged last, and with which number.
     fn pinged(&self) -> (ActorId, u16) {
-        let pings = self.said.iter().filter_map(|probe| match probe.call {
+        let mut pings = self.said.iter().rev().filter_map(|probe| match probe.call {
             Call::Ping { to } => Some((to, probe.number)),
             _ => None,
         });
-        pings.last().expect("it pinged somebody")
+        pings.next().expect("it pinged somebody")
     }
 
     /// The robot pinged last acknowledges.
