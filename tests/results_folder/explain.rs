@@ -213,7 +213,8 @@ fn the_command_explains_finished_results_and_refuses_all_others() {
 #[test]
 fn a_suspicion_by_probes_is_told_as_one() {
     let dir = tempdir().unwrap();
-    let text = text("faults: [Deaf(robots: [1], at: 3.0)]").replace("Timeout(0.35)", "Swim(suspicion_mult: 0.0)");
+    let text = text("faults: [Deaf(robots: [1], at: 3.0)]")
+        .replace("Timeout(0.35)", "Swim(suspicion_mult: 0.0, probe_interval: 1.5)");
     fs::write(dir.path().join("still.ron"), text).unwrap();
     desim(dir.path(), &["scenario", "still.ron", "--quiet", "--out", "there"]).success();
     let told = desim(dir.path(), &["explain", "there", "--trial", "0", "--robot", "1"]).success();
