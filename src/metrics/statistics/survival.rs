@@ -17,7 +17,7 @@ pub struct Observation {
 #[must_use]
 pub fn median_survival(observations: &[Observation]) -> Estimate {
     let curve = survival_curve(observations);
-    let first = |level: fn(&Step) -> f64| curve.iter().find(|step| level(step) <= 0.5).map(|step| step.time);
+    let first = |level: fn(&SurvivalStep) -> f64| curve.iter().find(|step| level(step) <= 0.5).map(|step| step.time);
     let ci95 = if observations.len() > 1 {
         [first(|step| step.band[0]), first(|step| step.band[1])]
     } else {
@@ -31,15 +31,22 @@ pub fn median_survival(observations: &[Observation]) -> Estimate {
 }
 
 /// The survival curve from `time` on.
-struct Step {
-    time: f64,
-    survival: f64,
-    band: [f64; 2],
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurvivalStep {
+    /// When something happened.
+    pub time: f64,
+    /// The share to which it has not happened by then, in [0, 1].
+    pub survival: f64,
+    /// Lower and upper end of its 95 % band.
+    pub band: [f64; 2],
+    /// To how many it could still happen just before.
+    pub at_risk: u64,
 }
 
 /// The Kaplan–Meier curve, a step for each time at which something happened. At a tie, what happened came before what
 /// was cut off.
-fn survival_curve(observations: &[Observation]) -> Vec<Step> {
+#[must_use]
+pub fn survival_curve(observations: &[Observation]) -> Vec<SurvivalStep> {
     let mut sorted = observations.to_vec();
     sorted.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut at_risk = sorted.len() as f64;
@@ -51,10 +58,11 @@ fn survival_curve(observations: &[Observation]) -> Vec<Step> {
         if happened > 0.0 {
             survival *= 1.0 - happened / at_risk;
             greenwood += happened / (at_risk * (at_risk - happened));
-            curve.push(Step {
+            curve.push(SurvivalStep {
                 time: tied[0].time,
                 survival,
                 band: band(survival, greenwood),
+                at_risk: at_risk as u64,
             });
         }
         at_risk -= tied.len() as f64;
