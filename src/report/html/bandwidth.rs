@@ -1,11 +1,11 @@
 //! What robots send and receive: by topic, by role, payload and headers.
 
 use plotly::common::{Marker, Orientation};
-use plotly::layout::{BarMode, HoverMode};
+use plotly::layout::{AxisRange, HoverMode};
 use plotly::{Bar, BoxPlot, Plot};
 
 use super::PageInput;
-use super::chart::{axis, categories, chart, faint, role_colour, shown, topic_colour, words};
+use super::chart::{axis, categories, chart, faint, role_colour, shown, stacked, topic_colour, words};
 use super::data::Spread;
 use super::figure::{Figure, Panel};
 use super::table::{Cell, DataTable};
@@ -216,9 +216,10 @@ pub fn headers(input: &PageInput) -> Figure {
             None => bar,
         }
     };
-    let mut plot = chart(axis("B/step sent by a robot, mean"), categories(""), HoverMode::Closest);
-    let layout = plot.layout().clone().bar_mode(BarMode::Stack);
-    plot.set_layout(layout);
+    // Room for the label of the longest bar.
+    let longest = bars.iter().map(|bar| bar.1 + bar.2).fold(f64::MIN_POSITIVE, f64::max);
+    let x = axis("B/step sent by a robot, mean").range(AxisRange::new(0.0, longest * 1.3));
+    let mut plot = stacked(x, categories(""));
     plot.add_trace(stack(
         "payload",
         "#4d7ea8",

@@ -3,7 +3,7 @@
 use plotly::color::Rgba;
 use plotly::common::{Anchor, Font, HoverInfo, Label, Line, LineShape, Mode, Orientation, Title};
 use plotly::configuration::{Configuration, DisplayModeBar, ModeBarButtonName};
-use plotly::layout::{Axis, AxisRange, HoverMode, Legend, Margin};
+use plotly::layout::{Axis, AxisRange, BarMode, HoverMode, Legend, Margin, TraceOrder};
 use plotly::{Layout, Plot, Scatter};
 
 /// Ink of axes and words.
@@ -105,6 +105,7 @@ fn bare(title: &str) -> Axis {
 pub fn chart(x: Axis, y: Axis, hover: HoverMode) -> Plot {
     let legend = Legend::new()
         .orientation(Orientation::Horizontal)
+        .trace_order(TraceOrder::Normal)
         .x(0.0)
         .x_anchor(Anchor::Left)
         .y(1.02)
@@ -192,4 +193,12 @@ pub fn band(
         .fill(plotly::common::Fill::ToNextY)
         .fill_color(faint(colour, 0.18));
     vec![edge(low), upper]
+}
+
+/// A chart of bars that lie on top of each other, with a legend also for a single kind.
+pub fn stacked(x: Axis, y: Axis) -> Plot {
+    let mut plot = chart(x, y, HoverMode::Closest);
+    let layout = plot.layout().clone().bar_mode(BarMode::Stack).show_legend(true);
+    plot.set_layout(layout);
+    plot
 }

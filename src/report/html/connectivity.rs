@@ -105,7 +105,10 @@ pub fn graph(input: &PageInput) -> Option<Figure> {
             "%{x:.4g} s: least λ₂ %{y:.3g}<extra></extra>",
         ));
     }
-    let mut second = chart(axis("time, s"), axis("components"), HoverMode::Closest);
+    let pieces = components.iter().map(|moment| moment.spread.max).fold(0.0, f64::max);
+    let y = axis("components");
+    let y = if pieces < 8.0 { y.dtick(1.0) } else { y };
+    let mut second = chart(axis("time, s"), y, HoverMode::Closest);
     draw(
         &mut second,
         "median",

@@ -2,14 +2,15 @@
 
 use plotly::Bar;
 use plotly::common::{LineShape, Marker, Orientation};
-use plotly::layout::{BarMode, HoverMode};
+use plotly::layout::HoverMode;
 
 use super::PageInput;
-use super::chart::{axis, categories, cause_colour, chart, line, percent_axis, words};
+use super::chart::{axis, categories, cause_colour, chart, line, percent_axis, stacked, words};
 use super::data::ecdf;
 use super::figure::{Figure, Panel};
 use super::table::DataTable;
 use crate::metrics::detection::{Cause, FailureOutcome, Verdict};
+use crate::metrics::summary::Measured;
 use crate::report::number;
 
 /// Suspicions by verdict and cause.
@@ -22,9 +23,7 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
             .count() as u64
     };
     let mut table = DataTable::new(&["verdict", "cause", "suspicions"]);
-    let mut plot = chart(axis("suspicions"), categories(""), HoverMode::Closest);
-    let layout = plot.layout().clone().bar_mode(BarMode::Stack);
-    plot.set_layout(layout);
+    let mut plot = stacked(axis("suspicions"), categories(""));
     for (number, cause) in Cause::ALL.into_iter().enumerate() {
         let counts = Verdict::ALL.map(|verdict| count(verdict, cause));
         if counts.iter().all(|&count| count == 0) {
@@ -151,33 +150,18 @@ pub fn quality(input: &PageInput) -> Vec<(&'static str, String)> {
         return Vec::new();
     }
     let failures = &detection.failures;
-    let mut rows = vec![
-        (
-            "query accuracy P_A",
-            number::estimate(&detection.query_accuracy.estimate, number::percent),
-        ),
-        (
-            "mistake recurrence T_MR",
-            format!(
-                "{} s",
-                number::estimate(&detection.mistake_recurrence_s.estimate, number::figure)
-            ),
-        ),
-        (
-            "mistake duration T_M",
-            format!(
-                "{} s",
-                number::estimate(&detection.mistake_duration_s.estimate, number::figure)
-            ),
-        ),
-        (
-            "detection time T_D",
-            format!(
-                "{} s",
-                number::estimate(&detection.detection_time_s.estimate, number::figure)
-            ),
-        ),
-    ];
+    let seconds = |name, measured: &Measured| {
+        let estimate = &measured.estimate;
+        let value = estimate
+            .value
+            .map(|_| format!("{} s", number::estimate(estimate, number::figure)));
+        value.map(|value| (name, value))
+    };
+    let accuracy = number::estimate(&detection.query_accuracy.estimate, number::percent);
+    let mut rows = vec![("query accuracy P_A", accuracy)];
+    rows.extend(seconds("mistake recurrence T_MR", &detection.mistake_recurrence_s));
+    rows.extend(seconds("mistake duration T_M", &detection.mistake_duration_s));
+    rows.extend(seconds("detection time T_D", &detection.detection_time_s));
     if failures.observed > 0 {
         let words = format!(
             "{} of {}",

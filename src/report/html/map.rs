@@ -95,22 +95,23 @@ fn map(input: &PageInput, record: &TrialRecord, load: &[f64]) -> Plot {
         .hover_template("target<extra></extra>");
         plot.add_trace(marks);
     }
-    let most = load.iter().copied().fold(0.0, f64::max);
+    let mut is_first = true;
     for role in 0..input.roles.len() {
-        if let Some(robots) = robots(input, record, role, load, most) {
+        if let Some(robots) = robots(input, record, role, load, is_first) {
             plot.add_trace(robots);
+            is_first = false;
         }
     }
     plot
 }
 
-/// The robots of one role.
+/// The robots of one role; the scale of colours stands beside the first.
 fn robots(
     input: &PageInput,
     record: &TrialRecord,
     role: usize,
     load: &[f64],
-    most: f64,
+    with_scale: bool,
 ) -> Option<Box<Scatter<f64, f64>>> {
     let of_role = || {
         record
@@ -120,6 +121,7 @@ fn robots(
             .filter(|(_, state)| usize::from(state.role) == role)
     };
     of_role().next()?;
+    let most = load.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let name = words(input.role(role));
     let symbol = match input.role(role) {
         "root" => MarkerSymbol::Square,
@@ -139,9 +141,9 @@ fn robots(
         .line(Line::new().width(if hollow { 3.0 } else { 0.8 }).color("#4d4d4d"))
         .color_array(of_role().map(|(robot, _)| shown(load[robot])).collect::<Vec<f64>>())
         .cmin(0.0)
-        .cmax(shown(most.max(f64::MIN_POSITIVE)))
+        .cmax(shown(most))
         .color_scale(ColorScale::Vector(scale()))
-        .show_scale(true)
+        .show_scale(with_scale)
         .color_bar(bar);
     let marker = if hollow {
         marker.line(Line::new().width(3.0))
@@ -201,6 +203,6 @@ fn links(record: &TrialRecord, range: f64) -> Box<Scatter<Option<f64>, Option<f6
     Scatter::new(x, y)
         .name("within range")
         .mode(Mode::Lines)
-        .line(Line::new().color("#c8d8c8").width(0.7))
+        .line(Line::new().color("#a9bfa9").width(0.8))
         .hover_info(HoverInfo::Skip)
 }

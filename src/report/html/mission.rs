@@ -2,7 +2,7 @@
 
 use plotly::Scatter;
 use plotly::common::{LineShape, Marker, MarkerSymbol, Mode};
-use plotly::layout::HoverMode;
+use plotly::layout::{Axis, AxisRange, HoverMode, RangeMode};
 
 use super::PageInput;
 use super::chart::{Points, axis, band, chart, line, percent_axis, shown};
@@ -33,12 +33,19 @@ pub fn completion(input: &PageInput) -> Option<Figure> {
     let cut_off = observations.iter().filter(|observation| !observation.happened).count() as u64;
     let caption = format!(
         "The share of missions complete by each control step of {} s, after Kaplan and Meier: {} of {} trials completed; half are done after \
-         {median} control steps. {} Trials that the time limit cut off ({}) count as not yet complete, each marked by a tick.",
+         {median} control steps. {}{}",
         input.scenario.control.period.get(),
         number::count(summary.completed),
         number::count(observations.len() as u64),
         band_words(observations.len()),
-        number::count(cut_off)
+        match cut_off {
+            0 => String::new(),
+            1 => " The trial that the time limit cut off counts as not yet complete, marked by a tick.".to_owned(),
+            many => format!(
+                " The {} trials that the time limit cut off count as not yet complete, each marked by a tick.",
+                number::count(many)
+            ),
+        }
     );
     let axis = "control steps";
     Some(curve(
@@ -126,7 +133,11 @@ fn curve(
         points.extend(points.last().map(|last| [end, last[1]]));
         points
     };
-    let mut plot = chart(axis(unit), percent_axis(what), HoverMode::Closest);
+    let mut plot = chart(
+        from_where_it_begins(axis(unit), &steps, end),
+        percent_axis(what),
+        HoverMode::Closest,
+    );
     if observations.len() > 1 {
         for edge in band(
             what,
@@ -173,6 +184,18 @@ fn curve(
         caption,
         panels: vec![Panel::new("", plot)],
         table,
+    }
+}
+
+/// The axis of times; where all that happened came late, it begins shortly before that.
+fn from_where_it_begins(axis: Axis, steps: &[SurvivalStep], end: f64) -> Axis {
+    match steps.first() {
+        Some(first) if first.time > 0.6 * end => {
+            let margin = (end - first.time).max(0.02 * end);
+            axis.range_mode(RangeMode::Normal)
+                .range(AxisRange::new((first.time - margin).max(0.0), end + 0.02 * margin))
+        }
+        _ => axis,
     }
 }
 

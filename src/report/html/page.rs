@@ -38,9 +38,9 @@ pub fn page(input: &PageInput) -> String {
             nav { @for section in &sections { a href={ "#" (section.id) } { (section.title) } } }
         }
         main {
-            section id="figures" {
-                h2 { "Figures" }
-                div class="scroll" tabindex="0" {
+            section id="found" {
+                h2 { "What was found" }
+                div class="scroll whole" {
                     table class="overview" {
                         tbody { @for (name, value) in overview::rows(input) { tr { th scope="row" { (name) } td { (value) } } } }
                     }

@@ -3,10 +3,10 @@
 use plotly::Bar;
 use plotly::Scatter;
 use plotly::common::{Font, LineShape, Marker, MarkerSymbol, Mode, Orientation, Position};
-use plotly::layout::{AxisType, BarMode, HoverMode};
+use plotly::layout::{AxisType, HoverMode};
 
 use super::PageInput;
-use super::chart::{ALL, DIRECTIONS, axis, categories, cause_colour, chart, line, percent_axis, shown, words};
+use super::chart::{ALL, DIRECTIONS, axis, categories, cause_colour, chart, line, percent_axis, shown, stacked, words};
 use super::figure::{Figure, Panel};
 use super::table::{Cell, DataTable};
 use crate::metrics::LatencyHistogram;
@@ -31,15 +31,12 @@ pub fn lost(input: &PageInput) -> Figure {
         row.extend(fates.lost.0.iter().map(|(_, frames)| Cell::from(*frames)));
         table.rows.push(row);
     }
-    let mut plot = chart(
-        axis("share of copies offered").tick_suffix(" %"),
-        categories(""),
-        HoverMode::Closest,
-    );
-    let layout = plot.layout().clone().bar_mode(BarMode::Stack);
-    plot.set_layout(layout);
+    let mut plot = stacked(axis("share of copies offered").tick_suffix(" %"), categories(""));
     let names: Vec<String> = rows.iter().rev().map(|(name, _)| words(name)).collect();
-    for (cause, name) in causes.iter().enumerate() {
+    // A cause that took nothing has no place in the legend; but a chart must have something to show.
+    let took = |cause: usize| frames.total.lost.0.get(cause).is_some_and(|(_, lost)| *lost > 0);
+    let any = (0..causes.len()).any(took);
+    for (cause, name) in causes.iter().enumerate().filter(|(cause, _)| took(*cause) || !any) {
         let share = |(_, fates): &(&str, &crate::metrics::summary::Fates)| {
             let lost = fates.lost.0.get(cause).map_or(0, |(_, frames)| *frames);
             shown(100.0 * lost as f64 / fates.offered.max(1) as f64)
@@ -103,7 +100,7 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
         .into_iter()
         .filter_map(|(q, name)| Some((all.quantile(q)?.as_secs(), q * 100.0, name)))
         .collect();
-    let label = |(time, _, name): &(f64, f64, &str)| format!("{name}: {}  ", number::seconds(*time));
+    let label = |(time, _, name): &(f64, f64, &str)| format!("  {name}: {}  ", number::seconds(*time));
     let marks = Scatter::new(
         quantiles.iter().map(|(time, ..)| shown(time * 1e3)).collect::<Vec<_>>(),
         quantiles.iter().map(|(_, share, _)| *share).collect::<Vec<_>>(),
@@ -112,7 +109,7 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
     .marker(Marker::new().color(DIRECTIONS[1]).size(7).symbol(MarkerSymbol::Circle))
     .text_array(quantiles.iter().map(label).collect::<Vec<_>>())
     .text_position_array(
-        [Position::MiddleLeft, Position::MiddleLeft, Position::TopLeft]
+        [Position::MiddleLeft, Position::MiddleLeft, Position::BottomRight]
             .into_iter()
             .take(quantiles.len())
             .collect(),

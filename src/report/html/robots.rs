@@ -2,7 +2,7 @@
 
 use plotly::Scatter;
 use plotly::common::{DashType, ErrorData, ErrorType, Line, LineShape, Marker, Mode};
-use plotly::layout::HoverMode;
+use plotly::layout::{AxisRange, HoverMode};
 
 use super::PageInput;
 use super::bandwidth::WAYS;
@@ -143,7 +143,8 @@ pub fn by_number(input: &PageInput) -> Option<Figure> {
             .show_legend(false)
             .name(direction)
             .hover_template("robot %{x}: %{y:.4g} B/step<extra></extra>");
-        let mut plot = chart(axis("robot"), axis("B/step"), HoverMode::Closest);
+        let x = axis("robot").range(AxisRange::new(-1.0, robots as f64));
+        let mut plot = chart(x, axis("B/step"), HoverMode::Closest);
         plot.add_trace(marks);
         panels.push(Panel::new(heading, plot));
     }
@@ -151,7 +152,7 @@ pub fn by_number(input: &PageInput) -> Option<Figure> {
         id: "bytes-by-robot-number",
         title: "Bytes of each robot",
         caption: "The same robots by their numbers: the median over trials, and a line from the least to the most of any trial. A robot \
-                  that stands out in every trial has a burden by its task (robot 0 is the backbone's root), not by chance."
+                  that stands out in every trial has a burden by its task, not by chance."
             .to_owned(),
         panels,
         table,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 
 /// Longer tables stay on the screen when the page is printed.
-pub const PRINTED_ROWS: usize = 40;
+pub const PRINTED_ROWS: usize = 24;
 
 /// A value in a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +82,7 @@ impl DataTable {
             }
             p class="take" {
                 a href=(data_url(&self.csv())) download=(name) { "Download " (name) }
-                @if long { span class="print-only" { " Its " (rows) " rows are in the page on the screen; they are not printed." } }
+                @if long { span class="print-only" { "Its data, " (rows) " rows, are not printed: they are in the page on the screen and in " (name) "." } }
             }
         }
     }
