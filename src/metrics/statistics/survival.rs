@@ -17,7 +17,7 @@ pub struct Observation {
 #[must_use]
 pub fn median_survival(observations: &[Observation]) -> Estimate {
     let curve = survival_curve(observations);
-    let first = |level: fn(&SurvivalStep) -> f64| curve.iter().find(|step| level(step) <= 0.5).map(|step| step.time);
+    let first = |level: fn(&Step) -> f64| curve.iter().find(|step| level(step) <= 0.5).map(|step| step.time);
     let ci95 = if observations.len() > 1 {
         [first(|step| step.band[0]), first(|step| step.band[1])]
     } else {
@@ -30,23 +30,21 @@ pub fn median_survival(observations: &[Observation]) -> Estimate {
     }
 }
 
-/// The survival curve from `time` on.
+/// The survival curve from one time on until the next step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurvivalStep {
-    /// When something happened.
+pub struct Step {
+    /// The time.
     pub time: f64,
-    /// The share to which it has not happened by then, in [0, 1].
+    /// Estimated share of trials that are not done by then.
     pub survival: f64,
-    /// Lower and upper end of its 95 % band.
+    /// Greenwood's 95 % band under the log(−log) transform.
     pub band: [f64; 2],
-    /// To how many it could still happen just before.
-    pub at_risk: u64,
 }
 
 /// The Kaplan–Meier curve, a step for each time at which something happened. At a tie, what happened came before what
 /// was cut off.
 #[must_use]
-pub fn survival_curve(observations: &[Observation]) -> Vec<SurvivalStep> {
+pub fn survival_curve(observations: &[Observation]) -> Vec<Step> {
     let mut sorted = observations.to_vec();
     sorted.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut at_risk = sorted.len() as f64;
@@ -58,11 +56,10 @@ pub fn survival_curve(observations: &[Observation]) -> Vec<SurvivalStep> {
         if happened > 0.0 {
             survival *= 1.0 - happened / at_risk;
             greenwood += happened / (at_risk * (at_risk - happened));
-            curve.push(SurvivalStep {
+            curve.push(Step {
                 time: tied[0].time,
                 survival,
                 band: band(survival, greenwood),
-                at_risk: at_risk as u64,
             });
         }
         at_risk -= tied.len() as f64;

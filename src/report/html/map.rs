@@ -60,10 +60,10 @@ pub fn traffic(input: &PageInput) -> Option<Figure> {
 }
 
 fn targets(input: &PageInput) -> Vec<Vec2> {
-    match &input.scenario.protocol {
-        ProtocolConfig::Backbone(config) => config.targets().into_iter().map(|(place, _)| place).collect(),
-        _ => Vec::new(),
-    }
+    let ProtocolConfig::Backbone(config) = &input.scenario.protocol else {
+        return Vec::new();
+    };
+    config.targets().into_iter().map(|(place, _)| place).collect()
 }
 
 fn map(input: &PageInput, record: &TrialRecord, load: &[f64]) -> Plot {

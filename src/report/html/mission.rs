@@ -8,7 +8,7 @@ use super::PageInput;
 use super::chart::{Points, axis, band, chart, line, percent_axis, shown};
 use super::figure::{Figure, Panel};
 use super::table::{Cell, DataTable};
-use crate::metrics::statistics::{Observation, SurvivalStep, survival_curve};
+use crate::metrics::statistics::{Observation, Step, survival_curve};
 use crate::metrics::{HealingEpisode, Outcome};
 use crate::report::number;
 
@@ -120,13 +120,19 @@ fn curve(
         "low, %",
         "high, %",
     ]);
+    let at_risk = |time: f64| {
+        observations
+            .iter()
+            .filter(|observation| observation.time >= time)
+            .count() as u64
+    };
     for step in &steps {
         let [low, high] = step.band;
-        let mut row: Vec<Cell> = vec![step.time.into(), step.at_risk.into()];
+        let mut row: Vec<Cell> = vec![step.time.into(), at_risk(step.time).into()];
         row.extend([done(step.survival), done(high), done(low)].map(Cell::from));
         table.rows.push(row);
     }
-    let points = |share: fn(&SurvivalStep) -> f64| {
+    let points = |share: fn(&Step) -> f64| {
         let jumps = steps.iter().map(|step| [step.time, done(share(step))]);
         let mut points: Points = std::iter::once([0.0, 0.0]).chain(jumps).collect();
         // The curve goes on to the end of the longest trial.
@@ -188,7 +194,7 @@ fn curve(
 }
 
 /// The axis of times; where all that happened came late, it begins shortly before that.
-fn from_where_it_begins(axis: Axis, steps: &[SurvivalStep], end: f64) -> Axis {
+fn from_where_it_begins(axis: Axis, steps: &[Step], end: f64) -> Axis {
     match steps.first() {
         Some(first) if first.time > 0.6 * end => {
             let margin = (end - first.time).max(0.02 * end);
