@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use xxhash_rust::xxh3::xxh3_128;
 
-use super::folder::{Contents, Folder, FolderError, SUMMARY};
+use super::folder::{Contents, Folder, FolderError, SUMMARY, measure};
 use super::manifest::{Difference, FileEntry, Manifest};
 use super::read::{self, NameLists};
 use crate::metrics::{Summary, TrialRecord};
@@ -230,36 +230,52 @@ fn verified(dir: &Path, manifest: &Manifest) -> Result<BTreeMap<String, Vec<u8>>
     }
     for (name, entry) in manifest.files.iter().filter(|(name, _)| *name != PAGE) {
         let path = dir.join(name);
-        let bytes = match fs::read(&path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                let wrong = "is missing".to_owned();
-                return Err(ResultsError::File { path, wrong });
+        let there = read(&path, name, wanted(name)).map_err(|source| match source.kind() {
+            io::ErrorKind::NotFound => ResultsError::File {
+                path: path.clone(),
+                wrong: "is missing".to_owned(),
+            },
+            _ => FolderError::Io {
+                action: "read",
+                path: path.clone(),
+                source,
             }
-            Err(source) => {
-                let action = "read";
-                return Err(FolderError::Io { action, path, source }.into());
-            }
-        };
-        if let Some(wrong) = fault(&bytes, entry) {
+            .into(),
+        })?;
+        if let Some(wrong) = fault(&there.0, entry) {
             return Err(ResultsError::File { path, wrong });
         }
-        if wanted(name) {
-            kept.insert(name.clone(), bytes);
-        }
+        kept.extend(there.1.map(|bytes| (name.clone(), bytes)));
     }
     Ok(kept)
 }
 
-/// What tells `bytes` from the file of `entry`, if anything.
-fn fault(bytes: &[u8], entry: &FileEntry) -> Option<String> {
-    let (there, written) = (bytes.len() as u64, entry.bytes);
+/// Length and hash of a file, and its bytes if they are `wanted`.
+fn read(path: &Path, name: &str, wanted: bool) -> io::Result<(FileEntry, Option<Vec<u8>>)> {
+    // Desim writes no such name, and whoever did must not lead out of the folder.
+    if name.contains(['/', '\\']) {
+        return Err(io::ErrorKind::NotFound.into());
+    }
+    if !wanted {
+        return Ok((measure(path)?, None));
+    }
+    let bytes = fs::read(path)?;
+    let entry = FileEntry {
+        bytes: bytes.len() as u64,
+        xxh3_128: format!("{:032x}", xxh3_128(&bytes)),
+    };
+    Ok((entry, Some(bytes)))
+}
+
+/// What tells the file that is `there` from the one that was `written`, if anything.
+fn fault(there: &FileEntry, written: &FileEntry) -> Option<String> {
+    let (length, right) = (there.bytes, written.bytes);
     match () {
-        () if there < written => Some(format!("is truncated, or another file ({there} of {written} bytes)")),
-        () if there > written => Some(format!(
-            "is another file than desim wrote ({there} bytes, not {written})"
+        () if length < right => Some(format!("is truncated, or another file ({length} of {right} bytes)")),
+        () if length > right => Some(format!(
+            "is another file than desim wrote ({length} bytes, not {right})"
         )),
-        () if format!("{:032x}", xxh3_128(bytes)) != entry.xxh3_128 => {
+        () if there.xxh3_128 != written.xxh3_128 => {
             Some("is another file than desim wrote (its length is right, its hash is not)".to_owned())
         }
         () => None,

@@ -102,7 +102,7 @@ fn a_damaged_folder_is_refused_by_the_file_that_is_wrong() {
             complaint(|dir| {
                 edit(&dir.join("manifest.json"), |text| {
                     text.replace("\"seed\": 1", "\"seed\": one")
-                })
+                });
             }),
         ),
         (
@@ -110,6 +110,14 @@ fn a_damaged_folder_is_refused_by_the_file_that_is_wrong() {
             complaint(|dir| {
                 edit(&dir.join("manifest.json"), |text| {
                     text.replace("\"faults.parquet\"", "\"gone.txt\"")
+                });
+            }),
+        ),
+        (
+            "manifest leads outside",
+            complaint(|dir| {
+                edit(&dir.join("manifest.json"), |text| {
+                    text.replace("\"final_0.svg\"", "\"../outside.svg\"")
                 });
             }),
         ),

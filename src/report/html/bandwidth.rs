@@ -67,7 +67,7 @@ pub fn by_topic(input: &PageInput) -> Figure {
         "bytes-by-topic",
         "Bytes by topic",
         caption,
-        WAYS.map(|(.., bytes)| groups(bytes)),
+        &WAYS.map(|(.., bytes)| groups(bytes)),
     )
 }
 
@@ -100,13 +100,13 @@ pub fn by_role(input: &PageInput) -> Option<Figure> {
         input.in_trials()
     );
     let groups = WAYS.map(|(.., bytes)| groups(bytes));
-    Some(spread_figure("bytes-by-role", "Bytes by role", caption, groups))
+    Some(spread_figure("bytes-by-role", "Bytes by role", caption, &groups))
 }
 
-fn spread_figure(id: &'static str, title: &'static str, caption: String, ways: [Vec<Group>; 2]) -> Figure {
+fn spread_figure(id: &'static str, title: &'static str, caption: String, ways: &[Vec<Group>; 2]) -> Figure {
     let mut table = DataTable::new(&SPREAD);
     let mut panels = Vec::new();
-    for ((direction, heading, _), groups) in WAYS.iter().zip(&ways) {
+    for ((direction, heading, _), groups) in WAYS.iter().zip(ways) {
         panels.push(Panel::of_rows(heading, boxes(groups), groups.len()));
         for group in groups {
             let Spread {

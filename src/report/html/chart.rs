@@ -171,8 +171,8 @@ pub fn band(
     colour: &'static str,
     low: &[[f64; 2]],
     high: &[[f64; 2]],
-    shape: LineShape,
-) -> Vec<Box<Scatter<f64, f64>>> {
+    shape: &LineShape,
+) -> [Box<Scatter<f64, f64>>; 2] {
     let edge = |points: &[[f64; 2]]| {
         let [x, y] = split(points);
         Scatter::new(x, y)
@@ -192,7 +192,7 @@ pub fn band(
     let upper = edge(high)
         .fill(plotly::common::Fill::ToNextY)
         .fill_color(faint(colour, 0.18));
-    vec![edge(low), upper]
+    [edge(low), upper]
 }
 
 /// A chart of bars that lie on top of each other, with a legend also for a single kind.

@@ -63,7 +63,7 @@ fn draw(
 ) {
     let [low, middle, high] = curves(moments);
     if banded {
-        for edge in band(name, colour, &low, &high, shape.clone()) {
+        for edge in band(name, colour, &low, &high, shape) {
             plot.add_trace(edge);
         }
     }
@@ -135,8 +135,8 @@ pub fn graph(input: &PageInput) -> Option<Figure> {
         id: "connectivity",
         title: "Connectivity over time",
         caption: format!(
-            "Left, the algebraic connectivity λ₂ of the graph of live robots within range of each other: 0 where it falls apart, larger the \
-             harder it is to cut. Right, into how many pieces it falls. {}",
+            "First the algebraic connectivity λ₂ of the graph of live robots within range of each other: 0 where it falls apart, larger the \
+             harder it is to cut. Then into how many pieces it falls. {}",
             input.band_words()
         ),
         panels: vec![

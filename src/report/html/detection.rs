@@ -134,8 +134,8 @@ pub fn times(input: &PageInput) -> Option<Figure> {
         id: "detection-times",
         title: "Detection times and mistakes",
         caption: format!(
-            "Which share took no longer than so many seconds ({}). Failures count once for each robot that watched; those that were never detected are counted in \
-             the table of figures, not here.",
+            "Which share took no longer than so many seconds ({}). Failures count once for each robot that watched; those that were never detected are counted under \
+             “What was found”, not here.",
             words.join(", ")
         ),
         panels,

@@ -150,7 +150,7 @@ fn curve(
             COLOUR,
             &points(|step| step.band[1]),
             &points(|step| step.band[0]),
-            LineShape::Hv,
+            &LineShape::Hv,
         ) {
             plot.add_trace(edge);
         }

@@ -57,7 +57,7 @@ pub fn distribution(input: &PageInput) -> Figure {
         let [low, middle, high] = curves;
         if trials.len() > 1 {
             // High ends of the share's values lie to the right: the band goes from left to right.
-            for edge in band(direction, colour, &low, &high, LineShape::Linear) {
+            for edge in band(direction, colour, &low, &high, &LineShape::Linear) {
                 plot.add_trace(edge);
             }
         }

@@ -50,7 +50,7 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
             }
             let [low, middle, high] = curves(&moments);
             if input.records.len() > 1 {
-                for edge in band(name, topic_colour(topic), &low, &high, LineShape::Linear) {
+                for edge in band(name, topic_colour(topic), &low, &high, &LineShape::Linear) {
                     plot.add_trace(edge);
                 }
             }
@@ -142,7 +142,7 @@ pub fn over_robots(input: &PageInput) -> Option<Figure> {
         let [_, low, _] = curves(&least);
         let [_, middle, _] = curves(&median);
         let [_, high, _] = curves(&most);
-        for edge in band("robots", ALL, &low, &high, LineShape::Linear) {
+        for edge in band("robots", ALL, &low, &high, &LineShape::Linear) {
             plot.add_trace(edge);
         }
         let median = line(
