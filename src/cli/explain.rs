@@ -8,7 +8,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::failure::Failure;
 use super::interrupt;
-use super::scenario::Format;
+use super::shown::Format;
 use crate::engine::ActorId;
 use crate::export::{self, Contents, Folder, Manifest};
 use crate::metrics::TrialRecord;
