@@ -72,7 +72,8 @@ pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
             env!("CARGO_PKG_VERSION")
         ));
     }
-    let explanation = Explanation::of(&scenario.name, &record).expect("the robot was traced");
+    let mut explanation = Explanation::of(&scenario.name, &record).expect("the robot was traced");
+    explanation.rule = scenario.detector.words();
     let chosen = chosen(&explanation, arguments)?;
     let mut out = io::stdout().lock();
     match (arguments.format, chosen) {

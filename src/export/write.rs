@@ -108,8 +108,8 @@ fn entry(part: &FinishedTrial) -> TrialEntry {
 /// What the scenario's protocol calls its topics and roles.
 fn names(scenario: &Scenario) -> Names {
     match &scenario.protocol {
-        ProtocolConfig::Backbone(_) => Names::of::<crate::protocol::backbone::Backbone>(),
-        ProtocolConfig::Heartbeat => Names::of::<crate::protocol::heartbeat::Heartbeat>(),
+        ProtocolConfig::Backbone(_) => Names::of::<crate::protocol::backbone::Backbone>(&scenario.detector),
+        ProtocolConfig::Heartbeat => Names::of::<crate::protocol::heartbeat::Heartbeat>(&scenario.detector),
     }
 }
 
