@@ -107,35 +107,47 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
     })
 }
 
+/// A mark on the curve.
+struct Mark {
+    /// Where, milliseconds and percent.
+    at: [f64; 2],
+    /// Which quantiles it is.
+    names: String,
+    /// Their latency, in words.
+    time: String,
+}
+
 /// Marks at the median and at the 95th and 99th percentile, those that read the same in one.
 fn quantiles(all: &LatencyHistogram) -> Box<Scatter<f64, f64>> {
-    let mut marks: Vec<(f64, f64, String, String)> = Vec::new();
+    let mut marks: Vec<Mark> = Vec::new();
     for (q, name) in [(0.5, "median"), (0.95, "95 %"), (0.99, "99 %")] {
-        let Some(time) = all.quantile(q) else { continue };
-        let words = number::seconds(time.as_secs());
-        match marks.iter_mut().find(|mark| mark.3 == words) {
-            Some(mark) => mark.2.push_str(&format!(", {name}")),
-            None => marks.push((shown(time.as_secs() * 1e3), q * 100.0, name.to_owned(), words)),
+        let Some(latency) = all.quantile(q) else { continue };
+        let time = number::seconds(latency.as_secs());
+        match marks.iter_mut().find(|mark| mark.time == time) {
+            Some(mark) => mark.names = format!("{}, {name}", mark.names),
+            None => marks.push(Mark {
+                at: [shown(latency.as_secs() * 1e3), q * 100.0],
+                names: name.to_owned(),
+                time,
+            }),
         }
     }
-    let label = |(_, _, name, time): &(f64, f64, String, String)| format!("  {name}: {time}  ");
+    let label = |mark: &Mark| format!("  {}: {}  ", mark.names, mark.time);
     // What is near the top has no room above, and may have none on the left.
-    let side = |(_, share, ..): &(f64, f64, String, String)| {
-        if *share > 98.0 {
+    let side = |mark: &Mark| {
+        if mark.at[1] > 98.0 {
             Position::BottomRight
         } else {
             Position::MiddleLeft
         }
     };
-    Scatter::new(
-        marks.iter().map(|mark| mark.0).collect(),
-        marks.iter().map(|mark| mark.1).collect(),
-    )
-    .mode(Mode::MarkersText)
-    .marker(Marker::new().color(DIRECTIONS[1]).size(7))
-    .text_array(marks.iter().map(label).collect::<Vec<_>>())
-    .text_position_array(marks.iter().map(side).collect())
-    .text_font(Font::new().size(11))
-    .hover_info(HoverInfo::Skip)
-    .show_legend(false)
+    let places = |part: usize| marks.iter().map(|mark| mark.at[part]).collect::<Vec<_>>();
+    Scatter::new(places(0), places(1))
+        .mode(Mode::MarkersText)
+        .marker(Marker::new().color(DIRECTIONS[1]).size(7))
+        .text_array(marks.iter().map(label).collect::<Vec<_>>())
+        .text_position_array(marks.iter().map(side).collect())
+        .text_font(Font::new().size(11))
+        .hover_info(HoverInfo::Skip)
+        .show_legend(false)
 }
