@@ -75,6 +75,7 @@ fn the_schema_states_ranges_and_refuses_what_lies_beyond() {
         ("/radio/range", 0.into()),
         ("/name", "a/b".into()),
         ("/protocol/Backbone/targets", "Ring".into()),
+        ("/protocol/Backbone/targets/Ring/links", 0.into()),
     ] {
         let mut json = well.clone();
         *json.pointer_mut(field).unwrap() = bad;

@@ -204,6 +204,7 @@ pub enum TargetsConfig {
         /// Their distance from the centre, metres.
         radius: Positive,
         /// Links that each needs, at least 1.
+        #[schemars(range(min = 1))]
         #[serde(default = "one_link")]
         links: u8,
     },
@@ -218,6 +219,7 @@ pub struct TargetConfig {
     /// Place in metres from the centre.
     pub at: (Finite, Finite),
     /// Links that it needs, at least 1.
+    #[schemars(range(min = 1))]
     #[serde(default = "one_link")]
     pub links: u8,
 }
