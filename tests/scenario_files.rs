@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use desim::cli::check::{Say, check};
 use desim::protocol::backbone::TargetsConfig;
 use desim::radio::{LatencyConfig, LossConfig};
 use desim::scenario::{Override, ProtocolConfig, Report, Scenario, json_schema, load, parse, question, to_ron};
@@ -340,7 +341,8 @@ fn the_mistake_of_an_override_without_a_value() {
 fn checked(files: &[PathBuf], overrides: &[&str], resolved: bool) -> (bool, String) {
     let overrides: Vec<_> = overrides.iter().map(|text| (*text).to_owned()).collect();
     let mut out = Vec::new();
-    let well = desim::cli::check::check(files, &overrides, resolved, &mut out).unwrap();
+    let say = if resolved { Say::Resolved } else { Say::Well };
+    let well = check(files, &overrides, say, &mut out).unwrap();
     (well, String::from_utf8(out).unwrap())
 }
 

@@ -15,6 +15,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use check::Say;
 use explain::ExplainArguments;
 pub use failure::Failure;
 use scenario::ScenarioArguments;
@@ -65,6 +66,13 @@ pub enum Command {
         /// Print each scenario whole, with every default and override in it
         #[arg(long)]
         resolved: bool,
+        /// Print what closed forms expect of each scenario: neighbours, loss, latency, bytes, mistakes of the detector, each with
+        /// its formula and with what it takes for granted
+        #[arg(long, conflicts_with = "resolved")]
+        predict: bool,
+        /// How to print what is expected: as tables, or as one JSON list with an entry a file
+        #[arg(long, value_enum, default_value_t, requires = "predict")]
+        format: scenario::Format,
     },
     /// Tell in words and times why a robot was suspected in a finished trial
     #[command(long_about = explain::LONG_ABOUT)]
@@ -85,8 +93,16 @@ pub fn run(command: Command) -> Result<(), Failure> {
             files,
             overrides,
             resolved,
+            predict,
+            format,
         } => {
-            let well = check::check(&files, &overrides, resolved, &mut out)?;
+            let say = match (resolved, predict, format) {
+                (true, ..) => Say::Resolved,
+                (_, true, scenario::Format::Text) => Say::Expected,
+                (_, true, scenario::Format::Json) => Say::ExpectedJson,
+                (false, false, _) => Say::Well,
+            };
+            let well = check::check(&files, &overrides, say, &mut out)?;
             if well { Ok(()) } else { Err(Failure::Shown) }
         }
         Command::Explain(arguments) => explain::run(&arguments),

@@ -15,6 +15,7 @@ use super::progress::Progress;
 use crate::experiment::{Ending, Experiment, ExperimentError, Parts};
 use crate::export::{self, Contents, Folder, Manifest, Pictures};
 use crate::metrics::Summary;
+use crate::predict::{self, Surprise};
 use crate::report::{self, Speed};
 use crate::scenario::{Scenario, contents, parse, question};
 use crate::simulation::{DriverKind, TrialError, run_trial};
@@ -135,11 +136,13 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
         }
         None => simulate(&folder, &scenario, arguments)?,
     };
+    let surprises = predict::surprises(&scenario, &summary);
     let control_period_s = scenario.control.period.get();
     print(
         &Finished {
             question: question(&text),
             control_period_s,
+            surprises,
             folder,
             summary,
             manifest,
@@ -256,6 +259,7 @@ fn failure(error: ExperimentError<TrialError>) -> Failure {
 struct Finished {
     question: Option<String>,
     control_period_s: f64,
+    surprises: Vec<Surprise>,
     folder: Folder,
     summary: Summary,
     manifest: Manifest,
@@ -278,6 +282,7 @@ fn text(finished: &Finished) -> String {
         question: finished.question.as_deref(),
         summary: &finished.summary,
         control_period_s: finished.control_period_s,
+        surprises: &finished.surprises,
         speed: Speed {
             simulated_s: trials.iter().map(|trial| trial.simulated_s).sum(),
             delivered: trials.iter().map(|trial| trial.delivered).sum(),

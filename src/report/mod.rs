@@ -4,7 +4,10 @@ mod explanation;
 mod failures;
 mod layout;
 mod number;
+mod preflight;
+mod surprises;
 mod terminal;
 
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
+pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};

@@ -17,6 +17,7 @@ fn report(records: &[TrialRecord], colour: bool) -> String {
         ),
         summary: &Summary::of("loss20", &TOPICS, &ROLES, records),
         control_period_s: 0.1,
+        surprises: &[],
         speed: Speed {
             simulated_s: 2100.0,
             delivered: 1_250_000,

@@ -115,7 +115,11 @@ pub fn share(shares: &[f64]) -> Estimate {
         Some(if mean <= 0.0 || mean >= 1.0 {
             wilson(mean, n, normal_quantile())
         } else if squared_error > 0.0 {
-            wilson(mean, mean * (1.0 - mean) / squared_error, student.inverse_cdf(1.0 - TAIL))
+            wilson(
+                mean,
+                mean * (1.0 - mean) / squared_error,
+                student.inverse_cdf(1.0 - TAIL),
+            )
         } else {
             [mean; 2]
         })
