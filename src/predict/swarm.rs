@@ -10,14 +10,15 @@ const NEIGHBOURS: &str = "neighbours";
 pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
     match &scene.spacing {
         Ok(spacing) => {
-            let value = spacing.neighbours(scene.scenario.radio.range.get());
+            let range = scene.scenario.radio.range.get();
+            let value = spacing.neighbours(range);
             let (formula, assumes) = law(&scene.scenario.swarm.deploy);
             preflight.predictions.push(Prediction {
                 name: "degree",
                 what: NEIGHBOURS,
                 value,
                 unit: "robots",
-                accuracy: value * spacing.covered(),
+                accuracy: spacing.accuracy(range),
                 holds: if scene.stands_still() {
                     Holds::Throughout
                 } else {

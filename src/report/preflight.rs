@@ -2,13 +2,13 @@
 
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 
-use super::layout::{Page, WIDTH};
+use super::layout::{Page, WIDTH, wrap};
 use super::number::{figure, percent, seconds};
 use super::terminal::RULED;
 use crate::predict::{Holds, Prediction, Preflight};
 
 /// Columns of what is expected, by how much it may be off, and what it rests on.
-const WIDTHS: [u16; 4] = [19, 14, 10, 37];
+const WIDTHS: [u16; 4] = [20, 18, 9, 33];
 
 /// A time beyond which its length no longer matters, seconds: a year.
 const LONG: f64 = 365.25 * 86_400.0;
@@ -41,7 +41,10 @@ pub fn preflight(preflight: &Preflight, question: Option<&str>, colour: bool) ->
     if !preflight.not_predicted.is_empty() {
         page.heading("Not predicted");
         for unpredicted in &preflight.not_predicted {
-            page.entry("", &format!("{}: {}", unpredicted.what, unpredicted.why));
+            let words = format!("{}: {}", unpredicted.what, unpredicted.why);
+            for (index, line) in wrap(&words, WIDTH - 4).iter().enumerate() {
+                page.line(&format!("{}{line}", if index == 0 { "  " } else { "    " }));
+            }
         }
     }
     page.text
@@ -55,7 +58,7 @@ fn table<'a>(predictions: impl Iterator<Item = &'a Prediction>) -> String {
         .set_width(WIDTH as u16);
     for prediction in predictions {
         let within = if prediction.accuracy > 0.0 {
-            in_unit(prediction.accuracy, prediction.unit)
+            percent(prediction.accuracy / prediction.value.abs())
         } else {
             "exact".to_owned()
         };
