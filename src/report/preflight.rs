@@ -2,7 +2,7 @@
 
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 
-use super::layout::{Page, WIDTH, wrap};
+use super::layout::{Page, WIDTH};
 use super::number::{figure, percent, seconds};
 use super::terminal::RULED;
 use crate::predict::{Holds, Prediction, Preflight};
@@ -41,10 +41,7 @@ pub fn preflight(preflight: &Preflight, question: Option<&str>, colour: bool) ->
     if !preflight.not_predicted.is_empty() {
         page.heading("Not predicted");
         for unpredicted in &preflight.not_predicted {
-            let words = format!("{}: {}", unpredicted.what, unpredicted.why);
-            for (index, line) in wrap(&words, WIDTH - 4).iter().enumerate() {
-                page.line(&format!("{}{line}", if index == 0 { "  " } else { "    " }));
-            }
+            page.item(&format!("{}: {}", unpredicted.what, unpredicted.why));
         }
     }
     page.text

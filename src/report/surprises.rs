@@ -24,6 +24,6 @@ pub fn section(page: &mut Page, surprises: &[Surprise]) {
             estimate(measured, write),
             write(predicted.value)
         );
-        page.entry("", &words);
+        page.item(&words);
     }
 }
