@@ -59,7 +59,13 @@ fn the_predictions_that_agree_are_those_of_the_run_and_not_of_any() {
     let found = surprises(&other, &summary);
     assert_eq!(
         names(&found),
-        ["loss_ratio", "latency_s", "mistake_rate_hz", "mistake_duration_s", "query_accuracy"],
+        [
+            "loss_ratio",
+            "latency_s",
+            "mistake_rate_hz",
+            "mistake_duration_s",
+            "query_accuracy"
+        ],
         "a loss of 0.20 is not one of 0.21"
     );
 }
