@@ -111,10 +111,12 @@ fn the_readme_names_exactly_the_columns_that_the_tables_have() {
             {
                 family.extend(rest.next());
             }
+            // A column that is documented by its own name is not one of the many.
+            let own = rest.peek().map(|next| next.name.clone());
+            let is_of =
+                |name: &String| Some(name) != own.as_ref() && family.iter().any(|column| matches(&column.name, name));
             let mut taken = 0;
-            while let Some((name, kind)) =
-                found.next_if(|(name, _)| family.iter().any(|column| matches(&column.name, name)))
-            {
+            while let Some((name, kind)) = found.next_if(|(name, _)| is_of(name)) {
                 let column = family.iter().find(|column| matches(&column.name, &name));
                 assert_eq!(
                     column.map(|column| &column.kind),
