@@ -21,7 +21,7 @@ pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
 
 fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static str> {
     let radio = &scene.scenario.radio;
-    let detector = detector(scene)?;
+    let detector = detector(scene);
     if detector.is_undecided() {
         return Err("the timeout is a multiple of the status interval and latency is 0: the order of events decides");
     }
@@ -38,7 +38,7 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
         return Err("it depends on the distances of neighbours, which are not known");
     };
     let model = Model::of(scene);
-    let ends = model.ends(scene);
+    let ends = ends(scene);
     let reading = reading_delay(scene);
     let mut push = |name, what, value, unit, accuracy, formula, assumes: &str| {
         preflight.predictions.push(Prediction {
@@ -108,11 +108,11 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
     Ok(())
 }
 
-/// The detector, where its closed forms are known.
-fn detector(scene: &Scene<'_>) -> Result<Timeout, &'static str> {
+/// The detector whose closed forms are asked for; one that has none is to be refused here, with the reason.
+fn detector(scene: &Scene<'_>) -> Timeout {
     let latency = &scene.scenario.radio.latency;
     match &scene.scenario.detector {
-        DetectorConfig::Timeout(timeout) => Ok(Timeout::new(scene.interval_s(), timeout.get(), latency)),
+        DetectorConfig::Timeout(timeout) => Timeout::new(scene.interval_s(), timeout.get(), latency),
     }
 }
 
@@ -155,18 +155,18 @@ impl Model {
             caveat,
         }
     }
+}
 
-    /// The share by which the ends of a run change the number of mistakes: what begins within a timeout of its end is none yet,
-    /// and a link is watched from an arrival on, which is an arrival more than its share.
-    fn ends(&self, scene: &Scene<'_>) -> f64 {
-        let radio = &scene.scenario.radio;
-        let chain = radio.loss.chain(radio.range.get(), radio.range.get());
-        let (arriving, memory) = (chain.arriving(), chain.memory());
-        let first = (1.0 + (1.0 - arriving) * memory / (1.0 - memory)) / arriving;
-        let interval = scene.interval_s();
-        let silence = scene.scenario.detector.longest_silence().as_secs();
-        ((silence + interval * (0.5 + first)) / scene.duration_s).min(1.0)
-    }
+/// The share by which the ends of a run change the number of mistakes: what begins within a timeout of its end is none yet,
+/// and a link is watched from an arrival on, which is an arrival more than its share.
+fn ends(scene: &Scene<'_>) -> f64 {
+    let radio = &scene.scenario.radio;
+    let chain = radio.loss.chain(radio.range.get(), radio.range.get());
+    let (arriving, memory) = (chain.arriving(), chain.memory());
+    let first = (1.0 + (1.0 - arriving) * memory / (1.0 - memory)) / arriving;
+    let interval = scene.interval_s();
+    let silence = scene.scenario.detector.longest_silence().as_secs();
+    ((silence + interval * (0.5 + first)) / scene.duration_s).min(1.0)
 }
 
 /// From the arrival of a status until its receiver reads it, on average, seconds.

@@ -2,6 +2,7 @@
 
 use super::scene::Scene;
 use super::{Holds, Prediction, Preflight};
+use crate::motion::Spacing;
 use crate::radio::LossConfig;
 use crate::scenario::ProtocolConfig;
 
@@ -42,7 +43,7 @@ fn loss(scene: &Scene<'_>, preflight: &mut Preflight) {
         ),
     };
     let by_distance = scene.depends_on_distance();
-    let covered = scene.spacing.as_ref().map_or(0.0, |spacing| spacing.covered());
+    let covered = scene.spacing.as_ref().map_or(0.0, Spacing::covered);
     preflight.predictions.push(Prediction {
         name: "loss_ratio",
         what: LOST,
