@@ -6,8 +6,10 @@ mod failure;
 mod interrupt;
 pub mod log;
 mod progress;
+pub mod report;
 pub mod scenario;
 pub mod schema;
+pub mod shown;
 
 use std::io;
 use std::path::PathBuf;
@@ -18,7 +20,9 @@ use clap::{Parser, Subcommand};
 use check::Say;
 use explain::ExplainArguments;
 pub use failure::Failure;
+use report::ReportArguments;
 use scenario::ScenarioArguments;
+use shown::Format;
 
 /// What the user asks for.
 #[derive(Debug, Parser)]
@@ -34,7 +38,7 @@ Runs a robot swarm's protocol over a radio that loses and delays frames, often e
 what the protocol costs, when it finishes, and what breaks it.
 
 A scenario file holds one question. `desim scenario` answers it: a report on the terminal, tables, pictures and a \
-summary in a folder.";
+summary in a folder. `desim report` makes a page of charts of that folder.";
 
 const EXIT_STATUS: &str = "\
 Exit status:
@@ -72,8 +76,11 @@ pub enum Command {
         predict: bool,
         /// How to print what is expected: as tables, or as one JSON list with an entry a file
         #[arg(long, value_enum, default_value_t, requires = "predict")]
-        format: scenario::Format,
+        format: Format,
     },
+    /// Report finished results again: on the terminal, and as a page of charts
+    #[command(long_about = report::LONG_ABOUT)]
+    Report(ReportArguments),
     /// Tell in words and times why a robot was suspected in a finished trial
     #[command(long_about = explain::LONG_ABOUT)]
     Explain(ExplainArguments),
@@ -98,13 +105,14 @@ pub fn run(command: Command) -> Result<(), Failure> {
         } => {
             let say = match (resolved, predict, format) {
                 (true, ..) => Say::Resolved,
-                (_, true, scenario::Format::Text) => Say::Expected,
-                (_, true, scenario::Format::Json) => Say::ExpectedJson,
+                (_, true, Format::Text) => Say::Expected,
+                (_, true, Format::Json) => Say::ExpectedJson,
                 (false, false, _) => Say::Well,
             };
             let well = check::check(&files, &overrides, say, &mut out)?;
             if well { Ok(()) } else { Err(Failure::Shown) }
         }
+        Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Schema => Ok(schema::schema(&mut out)?),
     }

@@ -21,7 +21,7 @@ pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
 
 fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static str> {
     let radio = &scene.scenario.radio;
-    let detector = detector(scene);
+    let detector = detector(scene)?;
     if detector.is_undecided() {
         return Err("the timeout is a multiple of the status interval and latency is 0: the order of events decides");
     }
@@ -38,8 +38,12 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
         return Err("it depends on the distances of neighbours, which are not known");
     };
     let model = Model::of(scene);
-    let ends = ends(scene);
+    let ends = ends(scene, detector.silence());
     let reading = reading_delay(scene);
+    let nfd_s = match scene.scenario.detector {
+        DetectorConfig::NfdS(_) => "; NFD-S: TO = η + δ − d",
+        _ => "",
+    };
     let mut push = |name, what, value, unit, accuracy, formula, assumes: &str| {
         preflight.predictions.push(Prediction {
             name,
@@ -49,7 +53,7 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
             accuracy,
             holds: model.holds,
             formula,
-            assumes: format!("{assumes}{}", model.caveat),
+            assumes: format!("{assumes}{nfd_s}{}", model.caveat),
         });
     };
     let pair = "a pair of robots in range, neither of which fails";
@@ -108,11 +112,20 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
     Ok(())
 }
 
-/// The detector whose closed forms are asked for; one that has none is to be refused here, with the reason.
-fn detector(scene: &Scene<'_>) -> Timeout {
+/// The detector, where its closed forms are known.
+fn detector(scene: &Scene<'_>) -> Result<Timeout, &'static str> {
     let latency = &scene.scenario.radio.latency;
-    match &scene.scenario.detector {
-        DetectorConfig::Timeout(timeout) => Timeout::new(scene.interval_s(), timeout.get(), latency),
+    let detector = &scene.scenario.detector;
+    let silence = detector.usual_silence(scene.scenario.circumstances()).as_secs();
+    match detector {
+        DetectorConfig::Timeout(_) => Ok(Timeout::from_arrival(scene.interval_s(), silence, latency)),
+        DetectorConfig::NfdS(_) => Ok(Timeout::from_sending(scene.interval_s(), silence, latency)),
+        DetectorConfig::PhiAccrual(_) => {
+            Err("φ-accrual learns from the intervals that losses leave: no closed form is known")
+        }
+        DetectorConfig::Swim(_) => {
+            Err("SWIM's closed forms are of probes, not of pairs of robots: none is known of these figures")
+        }
     }
 }
 
@@ -159,13 +172,12 @@ impl Model {
 
 /// The share by which the ends of a run change the number of mistakes: what begins within a timeout of its end is none yet,
 /// and a link is watched from an arrival on, which is an arrival more than its share.
-fn ends(scene: &Scene<'_>) -> f64 {
+fn ends(scene: &Scene<'_>, silence: f64) -> f64 {
     let radio = &scene.scenario.radio;
     let chain = radio.loss.chain(radio.range.get(), radio.range.get());
     let (arriving, memory) = (chain.arriving(), chain.memory());
     let first = (1.0 + (1.0 - arriving) * memory / (1.0 - memory)) / arriving;
     let interval = scene.interval_s();
-    let silence = scene.scenario.detector.longest_silence().as_secs();
     ((silence + interval * (0.5 + first)) / scene.duration_s).min(1.0)
 }
 

@@ -42,7 +42,7 @@ impl<'a> Scene<'a> {
     pub fn sends_statuses_alone(&self) -> bool {
         match self.scenario.protocol {
             ProtocolConfig::Backbone(_) => false,
-            ProtocolConfig::Heartbeat => true,
+            ProtocolConfig::Heartbeat => !self.scenario.detector.sends(),
         }
     }
 

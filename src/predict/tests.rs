@@ -1,11 +1,16 @@
 //! Predictions for whole scenarios.
 
 use super::*;
+use crate::protocol::detector::Link;
 use crate::scenario::parse;
 
-fn preflight(scenario: &str) -> Preflight {
-    let text = format!("Scenario(name: \"expected\", time_limit: 400.0, {scenario})");
-    Preflight::of(&parse("expected.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}")))
+fn scenario(text: &str) -> Scenario {
+    let text = format!("Scenario(name: \"expected\", time_limit: 400.0, {text})");
+    parse("expected.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn preflight(text: &str) -> Preflight {
+    Preflight::of(&scenario(text))
 }
 
 #[track_caller]
@@ -86,6 +91,44 @@ fn of_the_backbone_it_is_said_what_holds_when_and_what_nobody_can_predict() {
     assert_value(&expected, "status_tx_bytes_per_step", 9.0);
     let refused: Vec<_> = expected.not_predicted.iter().map(|refused| refused.name).collect();
     assert_eq!(refused, ["degree_at_end", "request", "strand", "channel_utilisation"]);
+}
+
+/// The closed forms of the detectors themselves are for simple Gilbert loss and constant latency: here both must be the same.
+#[test]
+fn timeouts_and_nfd_s_are_predicted_as_their_own_closed_forms_have_it() {
+    let link = Link {
+        interval_s: 1.0,
+        good_to_bad: 0.05,
+        bad_to_good: 0.2,
+        latency_s: 0.05,
+    };
+    for detector in ["Timeout(3.5)", "Timeout(3.0)", "NfdS(shift: 2.5)", "NfdS(shift: 3.0)"] {
+        let radio = "radio: (loss: GilbertElliott(good_to_bad: 0.05, bad_to_good: 0.2), latency: Constant(0.05))";
+        let text = format!("{}, {radio}", ROW.replace("Timeout(3.5)", detector));
+        let text = text.replace("control: (period: 0.5)", "control: (period: 0.5, wake: OnReception)");
+        let expected = preflight(&text);
+        let quality = scenario(&text).detector.quality(&link).unwrap();
+        assert_value(&expected, "mistake_recurrence_s", quality.mistake_recurrence_s);
+        assert_value(&expected, "mistake_duration_s", quality.mistake_duration_s);
+        assert_value(&expected, "query_accuracy", quality.query_accuracy);
+        assert_value(&expected, "detection_time_s", quality.detection_time_s);
+    }
+}
+
+#[test]
+fn detectors_without_closed_forms_are_said_to_have_none() {
+    for detector in ["PhiAccrual(dialect: Chitchat)", "Swim()"] {
+        let expected = preflight(&ROW.replace("Timeout(3.5)", detector));
+        assert!(expected.get("mistake_rate_hz").is_none(), "{detector}");
+        assert!(
+            expected.not_predicted.iter().any(|refused| refused.name == "detection"),
+            "{detector}"
+        );
+        assert_eq!(
+            expected.not_predicted.iter().any(|refused| refused.name == "probe"),
+            detector.starts_with("Swim")
+        );
+    }
 }
 
 #[test]

@@ -1,14 +1,17 @@
-//! The timeout detector in closed form: a status every η, a channel with losses and latency, a timeout TO from the last arrival on.
+//! Detectors that wait for so long in closed form: a status every η, a channel with losses and latency, a silence TO after which
+//! a robot is suspected.
 //!
-//! Let G be the number of statuses from one arrival to the next and Δ the difference of their two latencies, independent of each
-//! other. A gap of Gη + Δ beyond TO is a mistake, and lasts for what it is beyond. So, with s the share of statuses that arrive,
+//! Let G be the number of statuses from one arrival to the next and Δ by how much the latency of the second exceeds that of the
+//! first, independent of each other. A gap of Gη + Δ beyond TO is a mistake, and lasts for what it is beyond. So, with s the share
+//! of statuses that arrive,
 //!
 //! - q = P(Gη + Δ > TO) and T_MR = η / (s q);
 //! - T_M = E[(Gη + Δ − TO)⁺] / q, and then until the observer reads the arrival.
 //!
 //! With constant latency Δ = 0 and these are η/((1−p)pᵐ) and (m + 1/(1−p))η − TO under independent loss, m = ⌊TO/η⌋, and
 //! η(p+r)/(r p (1−r)^(m−1)) and (m + 1/r)η − TO under simple Gilbert loss; where TO is a multiple of η, a status that arrives at
-//! the very instant of the timeout is in time. Statuses are taken not to overtake each other.
+//! the very instant of the timeout is in time. NFD-S counts from the sending: its TO is η + δ, and Δ the latency of the second status
+//! alone. Statuses are taken not to overtake each other.
 
 use crate::radio::{LatencyConfig, LossChain, LossRun};
 
@@ -24,6 +27,8 @@ pub struct Timeout {
     interval: f64,
     /// TO, seconds.
     silence: f64,
+    /// When the silence begins after the sending of the status that was heard, seconds: values that stand for all, least first.
+    begins: Vec<f64>,
     /// Latencies that stand for all, least first, seconds.
     latencies: Vec<f64>,
 }
@@ -40,13 +45,30 @@ pub struct Mistakes {
 }
 
 impl Timeout {
-    /// A timeout of `timeout` seconds on statuses every `interval` seconds with this latency.
-    pub fn new(interval: f64, timeout: f64, latency: &LatencyConfig) -> Self {
+    /// A silence of `silence` seconds from the arrival of a status on, of which there is one every `interval` seconds.
+    pub fn from_arrival(interval: f64, silence: f64, latency: &LatencyConfig) -> Self {
+        let latencies = latency.quantiles(QUANTILES);
         Self {
             interval,
-            silence: timeout,
+            silence,
+            begins: latencies.clone(),
+            latencies,
+        }
+    }
+
+    /// A silence of `silence` seconds from the sending of a status on.
+    pub fn from_sending(interval: f64, silence: f64, latency: &LatencyConfig) -> Self {
+        Self {
+            interval,
+            silence,
+            begins: vec![0.0],
             latencies: latency.quantiles(QUANTILES),
         }
+    }
+
+    /// TO, seconds.
+    pub fn silence(&self) -> f64 {
+        self.silence
     }
 
     /// Whether a status may arrive at the very instant of a timeout without having been under way, when it depends on the order of
@@ -58,7 +80,14 @@ impl Timeout {
 
     /// The share of statuses that are overtaken by the next one.
     pub fn overtaken(&self) -> f64 {
-        self.share_of_pairs(|first, second| first > second + self.interval)
+        let overtaken = |first: &f64| {
+            self.latencies
+                .iter()
+                .filter(move |second| *first > **second + self.interval)
+                .count()
+        };
+        let number = self.latencies.len() as f64;
+        self.latencies.iter().map(overtaken).sum::<usize>() as f64 / number.powi(2)
     }
 
     /// The mistakes under the losses of `chain`.
@@ -66,24 +95,26 @@ impl Timeout {
         let Some(mut run) = chain.after_arrival() else {
             return Mistakes::default();
         };
-        let spread = self.latencies[self.latencies.len() - 1] - self.latencies[0];
+        let ends = |of: &[f64]| (of[0], of[of.len() - 1]);
+        let ((earliest, latest), (least, most)) = (ends(&self.begins), ends(&self.latencies));
         let (mut late, mut beyond) = (0.0, 0.0);
         // Gaps that end too early to be one, then those that may be one, then those that are.
         let mut gap = 0_u32;
-        while f64::from(gap + 1) * self.interval <= self.silence + spread + ROUNDING {
+        while f64::from(gap + 1) * self.interval <= self.silence + latest - least + ROUNDING {
             let before = run.probability();
             run.lose();
             gap += 1;
             let ends = before - run.probability();
             let over = f64::from(gap) * self.interval - self.silence;
-            if over + spread > ROUNDING {
+            if over + most - earliest > ROUNDING {
                 late += ends * self.share_of_pairs(|first, second| over + second - first > ROUNDING);
                 beyond += ends * self.mean_of_pairs(|first, second| (over + second - first).max(0.0));
             }
         }
         let (certain, longer) = (run.probability(), run.probabilities_from_here());
         late += certain;
-        beyond += certain * (f64::from(gap) * self.interval - self.silence);
+        beyond +=
+            certain * (f64::from(gap) * self.interval - self.silence + mean(&self.latencies) - mean(&self.begins));
         if certain > 0.0 {
             beyond += self.interval * longer;
         }
@@ -95,14 +126,14 @@ impl Timeout {
         }
     }
 
-    /// E[T_D] = E[(TO + D − U − Kη)⁺] of a robot that fails at a time that has nothing to do with its statuses: U is uniform in
+    /// E[T_D] = E[(TO + D − U − Kη)⁺], without D where the silence begins at the sending, of a robot that fails at a time that has nothing to do with its statuses: U is uniform in
     /// (0, η], K the number of its last statuses that were lost. A robot that is suspected as it fails is detected at once.
     pub fn detection_time(&self, chain: LossChain) -> f64 {
         let mean_beyond = |losses: u32| {
-            let at_most = |latency: &f64| self.silence + latency - f64::from(losses) * self.interval;
+            let at_most = |begin: &f64| self.silence + begin - f64::from(losses) * self.interval;
             let square = |time: f64| time.max(0.0).powi(2);
             let of = |time: f64| (square(time) - square(time - self.interval)) / (2.0 * self.interval);
-            self.latencies.iter().map(at_most).map(of).sum::<f64>() / self.latencies.len() as f64
+            self.begins.iter().map(at_most).map(of).sum::<f64>() / self.begins.len() as f64
         };
         let mut run: LossRun = chain.at_any_time();
         let (mut mean, mut losses) = (0.0, 0);
@@ -122,14 +153,18 @@ impl Timeout {
         self.mean_of_pairs(|first, second| f64::from(u8::from(holds(first, second))))
     }
 
-    /// The mean of a figure of two latencies, independent of each other.
+    /// The mean of a figure of the beginning of a silence and of a latency, independent of each other.
     fn mean_of_pairs(&self, figure: impl Fn(f64, f64) -> f64) -> f64 {
-        let pairs = self.latencies.iter().flat_map(|first| {
+        let pairs = self.begins.iter().flat_map(|begin| {
             let figure = &figure;
-            self.latencies.iter().map(move |second| figure(*first, *second))
+            self.latencies.iter().map(move |latency| figure(*begin, *latency))
         });
-        pairs.sum::<f64>() / (self.latencies.len() as f64).powi(2)
+        pairs.sum::<f64>() / (self.begins.len() * self.latencies.len()) as f64
     }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 #[cfg(test)]
@@ -153,7 +188,7 @@ mod tests {
     }
 
     fn constant(interval: f64, timeout: f64) -> Timeout {
-        Timeout::new(interval, timeout, &LatencyConfig::Constant(NonNegative::new(0.05)))
+        Timeout::from_arrival(interval, timeout, &LatencyConfig::Constant(NonNegative::new(0.05)))
     }
 
     #[track_caller]
@@ -175,7 +210,7 @@ mod tests {
         // m = 3, as for any timeout from 3 s to below 4 s; 40 · 0.1 is not 4 in binary.
         assert_figures(&constant(1.0, 3.0), bernoulli(0.2), 156.25, 3.0 + 1.25 - 3.0);
         assert_figures(&constant(0.1, 4.0), bernoulli(0.9), 0.1 / 0.1 / 0.9_f64.powi(40), 1.0);
-        let zero = Timeout::new(1.0, 3.0, &LatencyConfig::Constant(NonNegative::new(0.0)));
+        let zero = Timeout::from_arrival(1.0, 3.0, &LatencyConfig::Constant(NonNegative::new(0.0)));
         assert!(zero.is_undecided() && !constant(1.0, 3.0).is_undecided());
     }
 
@@ -189,15 +224,15 @@ mod tests {
         };
         let (p, late) = (0.2_f64, 0.2_f64.powi(2) + 0.8 * 0.2 / 2.0);
         let beyond = p.powi(2) * (2.0 + 1.25 - 2.0) + 0.8 * p * 0.2 / 6.0;
-        let found = Timeout::new(1.0, 2.0, &latency).mistakes(bernoulli(p));
+        let found = Timeout::from_arrival(1.0, 2.0, &latency).mistakes(bernoulli(p));
         assert!((found.rate / (0.8 * late) - 1.0).abs() < 0.006, "{found:?}");
         assert!((found.share / (0.8 * beyond) - 1.0).abs() < 0.006, "{found:?}");
     }
 
     #[test]
     fn failures_are_detected_after_the_published_time() {
-        let time =
-            Timeout::new(1.0, 3.5, &LatencyConfig::Constant(NonNegative::new(0.0))).detection_time(bernoulli(0.2));
+        let time = Timeout::from_arrival(1.0, 3.5, &LatencyConfig::Constant(NonNegative::new(0.0)))
+            .detection_time(bernoulli(0.2));
         // TO + d − η(½ + p/(1−p)) = 2.75 s, and 2.7528 s where a time is never below zero.
         assert!((time - 2.7528).abs() < 5e-5, "{time}");
         assert!((constant(1.0, 3.5).detection_time(bernoulli(0.0)) - 3.05).abs() < 1e-12);

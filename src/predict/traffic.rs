@@ -21,6 +21,10 @@ pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
         let why = "a strand has a byte for each robot of its chain so far: its size is the history of the mission";
         preflight.refuse("strand", "strand bytes", why);
     }
+    if scene.scenario.detector.sends() {
+        let why = "how many probes are answered late, asked through others and told on depends on who is suspected";
+        preflight.refuse("probe", "probe bytes", why);
+    }
     let why = "the radio has no bit rate: bytes are counted, airtime and collisions do not exist";
     preflight.refuse("channel_utilisation", "share of the channel used", why);
 }

@@ -2,6 +2,7 @@
 
 mod explanation;
 mod failures;
+mod html;
 mod layout;
 mod number;
 mod preflight;
@@ -9,5 +10,6 @@ mod surprises;
 mod terminal;
 
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
+pub use html::{PAGE_MARK, PageInput, page};
 pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};

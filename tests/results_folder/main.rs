@@ -8,4 +8,6 @@ mod documentation;
 mod explain;
 mod fixture;
 mod folder;
+mod page;
+mod read_back;
 mod report;
