@@ -5,8 +5,11 @@ mod failures;
 mod html;
 mod layout;
 mod number;
+mod preflight;
+mod surprises;
 mod terminal;
 
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use html::{PAGE_MARK, PageInput, page};
+pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};

@@ -1,0 +1,107 @@
+//! What several predictions need to know of a scenario.
+
+use crate::engine::Span;
+use crate::motion::Spacing;
+use crate::radio::LossConfig;
+use crate::scenario::{ProtocolConfig, Scenario};
+
+/// A scenario, looked at by one who predicts.
+pub struct Scene<'a> {
+    pub scenario: &'a Scenario,
+    /// How long a trial lasts, seconds.
+    pub duration_s: f64,
+    /// Where robots stand at the start, or why no law of it is known.
+    pub spacing: Result<Spacing, &'static str>,
+}
+
+/// Shells that the range is cut into where a figure depends on the distance.
+const SHELLS: usize = 100;
+/// Bytes of a status, header not included: the codec's of either protocol.
+const STATUS_BYTES: f64 = 4.0;
+
+impl<'a> Scene<'a> {
+    pub fn of(scenario: &'a Scenario, duration_s: f64) -> Self {
+        let swarm = &scenario.swarm;
+        let body_radius = scenario.motion.body_radius.get();
+        Self {
+            scenario,
+            duration_s,
+            spacing: Spacing::of(&swarm.deploy, &scenario.arena, swarm.robots, body_radius),
+        }
+    }
+
+    /// Whether robots stay where they are deployed.
+    pub fn stands_still(&self) -> bool {
+        match self.scenario.protocol {
+            ProtocolConfig::Backbone(_) => false,
+            ProtocolConfig::Heartbeat => true,
+        }
+    }
+
+    /// Whether robots send nothing but statuses.
+    pub fn sends_statuses_alone(&self) -> bool {
+        match self.scenario.protocol {
+            ProtocolConfig::Backbone(_) => false,
+            ProtocolConfig::Heartbeat => !self.scenario.detector.sends(),
+        }
+    }
+
+    /// Length of a control step, seconds.
+    pub fn period_s(&self) -> f64 {
+        self.scenario.control.period.get()
+    }
+
+    /// Control steps from one status of a robot to the next.
+    pub fn steps_a_status(&self) -> f64 {
+        let period = Span::from_secs(self.period_s());
+        self.scenario.gossip.status.steps(period) as f64
+    }
+
+    /// η, seconds from one status of a robot to the next.
+    pub fn interval_s(&self) -> f64 {
+        self.steps_a_status() * self.period_s()
+    }
+
+    /// Bytes of a status, header included.
+    pub fn status_bytes(&self) -> f64 {
+        STATUS_BYTES + f64::from(self.scenario.radio.header_bytes)
+    }
+
+    /// The means of figures of the distance over the neighbours at the start; the figures themselves where they do not depend on
+    /// it. `None` if distances are not known, or nobody has a neighbour.
+    pub fn mean_over_neighbours<const N: usize>(&self, figures: impl Fn(f64) -> [f64; N]) -> Option<[f64; N]> {
+        let range = self.scenario.radio.range.get();
+        if !self.depends_on_distance() {
+            return Some(figures(range));
+        }
+        // Shells, so that the work does not grow with the number of places given.
+        let mut shells = [[0.0; 2]; SHELLS];
+        self.spacing.as_ref().ok()?.for_each_within(range, |distance, number| {
+            let shell = ((distance / range * SHELLS as f64) as usize).min(SHELLS - 1);
+            shells[shell][0] += number;
+            shells[shell][1] += number * distance;
+        });
+        let neighbours: f64 = shells.iter().map(|shell| shell[0]).sum();
+        let mut means = [0.0; N];
+        for [number, distances] in shells.into_iter().filter(|shell| shell[0] > 0.0) {
+            let figures = figures(distances / number);
+            for (mean, figure) in means.iter_mut().zip(figures) {
+                *mean += number / neighbours * figure;
+            }
+        }
+        (neighbours > 0.0).then_some(means)
+    }
+
+    /// Whether copies to near robots are lost less often than those to far ones.
+    pub fn depends_on_distance(&self) -> bool {
+        matches!(self.scenario.radio.loss, LossConfig::Distance { .. })
+    }
+
+    /// The share of copies lost in the channel, over the neighbours at the start.
+    pub fn loss_ratio(&self) -> Option<f64> {
+        let radio = &self.scenario.radio;
+        let loss = |distance| radio.loss.mean_loss(distance, radio.range.get());
+        self.mean_over_neighbours(|distance| [loss(distance)])
+            .map(|[loss]| loss)
+    }
+}
