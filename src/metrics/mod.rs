@@ -10,6 +10,7 @@ mod mission;
 mod record;
 mod recorder;
 mod reports;
+mod spread;
 pub mod statistics;
 pub mod summary;
 mod traffic;
@@ -23,5 +24,6 @@ pub use record::{
     TrialRecord, Volume,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
+pub use spread::RumorSpread;
 pub use statistics::Estimate;
 pub use summary::Summary;

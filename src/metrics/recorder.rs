@@ -12,9 +12,10 @@ use super::detection::{CopyFate, Scorer, StatusTrace};
 use super::faults::Failures;
 use super::healing::Healing;
 use super::latency::LatencyHistogram;
-use super::mission::{Judge, Mission, Progress, Scene};
+use super::mission::{Hold, Judge, Mission, Progress, Scene};
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
 use super::reports::Reports;
+use super::spread::Spread;
 use super::traffic::Traffic;
 
 /// The shape of a run, known before it starts.
@@ -34,6 +35,8 @@ pub struct Layout {
     pub control_period: Span,
     /// What the swarm is asked to do, if anything.
     pub mission: Option<Mission>,
+    /// How many rumours there are that all robots are to know; 0 for none.
+    pub rumors: usize,
     /// How far back a suspicion is traced to the statuses that were missed.
     pub status_memory: Span,
     /// The robot whose statuses are followed one by one, if any.
@@ -76,6 +79,9 @@ pub struct Recorder {
     detection: Scorer,
     trace: Option<StatusTrace>,
     judge: Option<Judge>,
+    spread: Spread,
+    /// How far the rumours have come, if there are any.
+    everyone_knows: Option<Hold>,
     connectivity: Vec<ConnectivitySample>,
     trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
     /// The last sample's graph and its λ₂, which stands as long as no edge changes.
@@ -86,7 +92,7 @@ impl Recorder {
     /// A recorder for a run of this shape, before its start.
     #[must_use]
     pub fn new(layout: Layout, config: &MetricsConfig) -> Self {
-        let hold = Span::from_secs(config.hold.get());
+        let hold = Hold::new(Span::from_secs(config.hold.get()), layout.control_period);
         Self {
             roles: layout.roles,
             radio_range: layout.radio_range,
@@ -100,9 +106,9 @@ impl Recorder {
             healing: Healing::new(layout.topics),
             detection: Scorer::new(layout.robots, layout.status_memory),
             trace: layout.trace.map(StatusTrace::new),
-            judge: layout
-                .mission
-                .map(|mission| Judge::new(mission, hold, layout.control_period)),
+            judge: layout.mission.map(|mission| Judge::new(mission, hold.clone())),
+            spread: Spread::new(layout.rumors, layout.robots),
+            everyone_knows: (layout.rumors > 0).then_some(hold),
             connectivity: Vec::new(),
             trajectories: Vec::new(),
             last_graph: None,
@@ -147,10 +153,13 @@ impl Recorder {
     /// `robot` reported a change.
     ///
     /// # Panics
-    /// If it reports a role or a parent that the run does not have.
+    /// If it reports a role, a parent or a rumour that the run does not have.
     pub fn note(&mut self, robot: ActorId, note: &Note) {
-        if let Note::Role(role) = note {
-            self.traffic.enter(robot, *role);
+        match *note {
+            Note::Role(role) => self.traffic.enter(robot, role),
+            Note::Duplicate { topic, payload_bytes } => self.traffic.duplicate(robot, topic, payload_bytes),
+            Note::Informed { rumor, at } => self.spread.inform(robot, rumor, at),
+            _ => {}
         }
         self.reports.note(robot, note);
     }
@@ -244,8 +253,12 @@ impl Recorder {
         }
     }
 
-    /// Judges the mission at control step number `step`, from 0, with every robot at its place in `positions`.
+    /// Judges the mission, or how far rumours have come, at control step number `step`, from 0, with every robot at its place
+    /// in `positions`.
     pub fn observe(&mut self, step: u64, positions: &[Vec2]) -> Progress {
+        if let Some(everyone_knows) = &mut self.everyone_knows {
+            return everyone_knows.observe(step, || self.spread.is_complete(&self.failures));
+        }
         let Some(judge) = &mut self.judge else {
             return Progress::Underway;
         };
@@ -271,11 +284,12 @@ impl Recorder {
                 "frames were not conserved on topic {topic}: {fates}"
             );
         }
-        let outcome = self.judge.as_ref().map_or(Outcome::NoMission, |judge| {
-            judge
-                .completed_at()
-                .map_or(Outcome::Censored, |step| Outcome::Completed { step })
-        });
+        let ended = |completed: Option<u64>| completed.map_or(Outcome::Censored, |step| Outcome::Completed { step });
+        let outcome = match (&self.everyone_knows, &self.judge) {
+            (Some(everyone_knows), _) => ended(everyone_knows.completed_at()),
+            (None, Some(judge)) => ended(judge.completed_at()),
+            (None, None) => Outcome::NoMission,
+        };
         TrialRecord {
             trial: end.trial,
             seed: end.seed,
@@ -292,6 +306,7 @@ impl Recorder {
             trace: self.trace,
             faults: self.failures.into_episodes(),
             healing: self.healing.into_episodes(),
+            spread: self.spread.into_records(),
             connectivity: self.connectivity,
             robots: robots(self.reports, end.poses),
             trajectories: self.trajectories,
@@ -350,6 +365,7 @@ mod tests {
             radio_range: RANGE,
             control_period: Span::from_secs(0.1),
             mission,
+            rumors: 0,
             status_memory: Span::from_secs(8.0),
             trace: None,
         };

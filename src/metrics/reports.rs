@@ -41,6 +41,8 @@ impl Reports {
             }
             // Beliefs about failures change nothing of the traffic, the graph or the mission.
             Note::Watches(_) | Note::Suspects { .. } | Note::Trusts(_) => {}
+            // Nor does what was heard twice; who knows what is kept apart.
+            Note::Duplicate { .. } | Note::Informed { .. } => {}
         }
     }
 

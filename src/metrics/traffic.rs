@@ -38,6 +38,7 @@ pub(super) struct Traffic {
     header_bytes: u16,
     sent: Vec<Count>,
     received: Vec<Count>,
+    duplicate: Vec<Count>,
     /// A table for each cause, in the order of their numbers.
     lost: [Vec<Count>; LossCause::ALL.len()],
     /// Where the cells of each robot's present role begin in these tables.
@@ -54,6 +55,7 @@ impl Traffic {
             header_bytes,
             sent: vec![Count::default(); cells],
             received: vec![Count::default(); cells],
+            duplicate: vec![Count::default(); cells],
             lost: LossCause::ALL.map(|_| vec![Count::default(); cells]),
             starts: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
         }
@@ -83,6 +85,12 @@ impl Traffic {
     pub(super) fn received(&mut self, robot: ActorId, topic: Topic, payload_bytes: u32) {
         let cell = self.cell(robot, topic);
         self.received[cell].add(payload_bytes);
+    }
+
+    /// What was received told its receiver nothing new.
+    pub(super) fn duplicate(&mut self, robot: ActorId, topic: Topic, payload_bytes: u32) {
+        let cell = self.cell(robot, topic);
+        self.duplicate[cell].add(payload_bytes);
     }
 
     #[inline]
@@ -124,6 +132,7 @@ impl Traffic {
             topic: (cell % self.topics) as u8,
             sent: volume(self.sent[cell]),
             received: volume(self.received[cell]),
+            duplicate: volume(self.duplicate[cell]),
             lost: LossCause::ALL.map(|cause| volume(self.lost[cause as usize][cell])),
         }
     }

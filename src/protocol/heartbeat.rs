@@ -1,7 +1,7 @@
 //! Heartbeats and status timeouts on their own: the workload on which failure detectors and drivers are measured.
 //!
 //! Every robot broadcasts a 4-byte status and believes that a neighbour is down when it has not heard it for the
-//! timeout. Robots stand still.
+//! timeout. Robots stand still, or wander.
 
 use std::rc::Rc;
 
@@ -9,26 +9,34 @@ use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
 use super::detector::{Detector, DetectorConfig};
-use super::gossip::GossipConfig;
+use super::gossip::{GossipConfig, Turns};
+use super::wander::{Ground, Wander};
 use super::{CodecError, Input, Output, Protocol, Topic, Wake};
-use crate::engine::{SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, Streams};
 
 /// Settings that all robots share.
 #[derive(Debug)]
 pub struct Settings {
-    /// Control steps from one status to the next.
-    status_every: u64,
+    status_turns: Turns,
     detector: DetectorConfig,
+    ground: Ground,
 }
 
 impl Settings {
-    /// From a scenario's gossip and detector settings.
+    /// From a scenario's gossip and detector settings, in a trial with these `streams`.
     #[must_use]
-    pub fn new(gossip: &GossipConfig, detector: &DetectorConfig, control_period: Span) -> Self {
+    pub fn new(gossip: &GossipConfig, detector: &DetectorConfig, control_period: Span, streams: Streams) -> Self {
         Self {
-            status_every: gossip.status.steps(control_period),
+            status_turns: Turns::new(gossip.status.timing(control_period), 0, streams),
             detector: detector.clone(),
+            ground: Ground::still(),
         }
+    }
+
+    /// The same, for robots that move on `ground`.
+    #[must_use]
+    pub fn wandering(self, ground: Ground) -> Self {
+        Self { ground, ..self }
     }
 }
 
@@ -42,21 +50,25 @@ pub struct Status {
 /// One robot's heartbeat and what it believes of its neighbours.
 #[derive(Debug)]
 pub struct Heartbeat {
+    id: ActorId,
     settings: Rc<Settings>,
     control_steps: u64,
     sent: u32,
     detector: Detector,
+    wander: Wander,
 }
 
 impl Heartbeat {
-    /// A robot that has heard nobody yet.
+    /// Robot `id`, which has heard nobody yet.
     #[must_use]
-    pub fn new(settings: Rc<Settings>) -> Self {
+    pub fn new(id: ActorId, settings: Rc<Settings>) -> Self {
         Self {
+            id,
             detector: Detector::new(&settings.detector),
             settings,
             control_steps: 0,
             sent: 0,
+            wander: Wander::default(),
         }
     }
 }
@@ -76,7 +88,9 @@ impl Protocol for Heartbeat {
         match input.wake {
             Wake::Timer(_) => self.detector.expire(now, output),
             Wake::ControlStep => {
-                if self.control_steps.is_multiple_of(self.settings.status_every) {
+                let settings = &self.settings;
+                output.velocity = self.wander.velocity(&settings.ground, self.id, now, input.pose.position);
+                if settings.status_turns.is_due(self.id, self.control_steps) {
                     output.broadcasts.push(Status { number: self.sent });
                     self.sent = self.sent.wrapping_add(1);
                 }

@@ -18,6 +18,8 @@ pub mod detector;
 pub mod gossip;
 pub mod heartbeat;
 mod row_index;
+pub mod rumor;
+pub mod wander;
 
 /// Index of a topic in [`Protocol::TOPICS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -114,6 +116,15 @@ pub struct Reception<M> {
 }
 
 impl<M> Reception<M> {
+    /// What the metrics should know if it told its receiver nothing new.
+    #[must_use]
+    pub fn duplicate(&self) -> Note {
+        Note::Duplicate {
+            topic: self.frame.topic,
+            payload_bytes: self.frame.payload_bytes,
+        }
+    }
+
     /// [`displacement`](Self::displacement) as a vector.
     #[must_use]
     pub fn displacement(&self) -> Vec2 {
@@ -177,6 +188,20 @@ pub enum Note {
     },
     /// It believes so no longer.
     Trusts(ActorId),
+    /// It read a message that told it nothing new: [`Reception::duplicate`].
+    Duplicate {
+        /// Its topic.
+        topic: Topic,
+        /// Its payload in bytes.
+        payload_bytes: u32,
+    },
+    /// It knows this rumour since then.
+    Informed {
+        /// The rumour, from 0.
+        rumor: u16,
+        /// When it arrived, or was begun here.
+        at: SimTime,
+    },
 }
 
 /// Payload bytes that are no message of the protocol.

@@ -69,6 +69,8 @@ pub struct Setup {
     pub trace: Option<ActorId>,
     /// What counts as completion, if anything does.
     pub mission: Option<Mission>,
+    /// How many rumours all robots are to know, which then is completion; 0 for none.
+    pub rumors: usize,
 }
 
 impl Setup {
@@ -140,7 +142,7 @@ impl Setup {
             sample_interval: Span::from_secs(self.metrics.sample_interval.get()),
             time_limit: SimTime::ZERO + self.time_limit,
             wake_on_reception: self.control.wake == WakeConfig::OnReception,
-            has_mission: self.mission.is_some(),
+            has_mission: self.mission.is_some() || self.rumors > 0,
         }
     }
 
@@ -153,6 +155,7 @@ impl Setup {
             radio_range: self.radio.range.get(),
             control_period: Span::from_secs(self.control.period.get()),
             mission: self.mission.clone(),
+            rumors: self.rumors,
             // A status may be that much older than the silence that it began, when its latency is long.
             status_memory: self.detector.longest_silence() * 2,
             trace: self.trace,

@@ -26,6 +26,7 @@ fn robots(targets: u8) -> Vec<Backbone> {
         &DetectorConfig::default(),
         Span::from_secs(0.1),
         &poses,
+        Streams::new(1, 0),
     )
 }
 
