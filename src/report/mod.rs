@@ -4,6 +4,7 @@ mod explanation;
 mod failures;
 mod layout;
 mod number;
+mod spread;
 mod terminal;
 
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};

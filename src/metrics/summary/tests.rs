@@ -28,6 +28,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
             root: ActorId(0),
             worker_role: Role(1),
         }),
+        rumors: 0,
         status_memory: Span::from_secs(8.0),
         trace: None,
     };
