@@ -8,7 +8,7 @@ use std::rc::Rc;
 use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
-use super::detector::{Detector, DetectorConfig};
+use super::detector::{Detector, DetectorConfig, Monitored};
 use super::gossip::{GossipConfig, Turns};
 use super::wander::{Ground, Wander};
 use super::{CodecError, Input, Output, Protocol, Topic, Wake};
@@ -47,6 +47,12 @@ pub struct Status {
     pub number: u32,
 }
 
+impl Monitored for Status {
+    fn is_status(&self) -> bool {
+        true
+    }
+}
+
 /// One robot's heartbeat and what it believes of its neighbours.
 #[derive(Debug)]
 pub struct Heartbeat {
@@ -82,9 +88,7 @@ impl Protocol for Heartbeat {
     const SENSES_PROXIMITY: bool = false;
 
     fn step(&mut self, now: SimTime, input: &mut Input<Status>, output: &mut Output<Status>) {
-        for reception in &input.inbox {
-            self.detector.hear(reception, output);
-        }
+        self.detector.read(&input.inbox, output);
         match input.wake {
             Wake::Timer(_) => self.detector.expire(now, output),
             Wake::ControlStep => {

@@ -1,7 +1,5 @@
 //! Between a robot that sends and the robots that hear: encode, offer to the medium, put arrivals into inboxes.
 
-use std::rc::Rc;
-
 use bytes::BytesMut;
 use tokio_util::codec::{Decoder, Encoder};
 
@@ -135,14 +133,13 @@ impl<P: Protocol> Air<P> {
             recorder.status_sent(now, sender, self.medium.upcoming(sender));
         }
         recorder.offered(topic, self.listeners.len() as u64);
-        let frame = Rc::new(Frame {
+        let frame = Frame {
             sender,
             sequence: self.medium.upcoming(sender),
             sent_at: now,
-            topic,
             payload_bytes,
             message,
-        });
+        };
         if !self.hindrances.is_empty() {
             self.hinder(&frame, faults, recorder);
         }
@@ -174,7 +171,7 @@ impl<P: Protocol> Air<P> {
             }
             self.inboxes[arrival.receiver.index()].push(Reception {
                 at: arrival.at,
-                frame: Rc::clone(&frame),
+                frame: frame.clone(),
                 displacement: arrival.displacement,
             });
         }
@@ -226,7 +223,7 @@ impl<P: Protocol> Air<P> {
         self.lose_unheard(now + INSTANT, receiver, recorder);
         self.inboxes[receiver.index()].take_arrived(now, arrived);
         for reception in arrived.iter() {
-            record_delivery(receiver, reception, recorder);
+            record_delivery::<P>(receiver, reception, recorder);
         }
         if recorder.is_tracing() {
             for Reception { frame, .. } in arrived.iter() {
@@ -262,9 +259,9 @@ impl<P: Protocol> Air<P> {
         for (receiver, inbox) in self.inboxes.iter().enumerate() {
             for reception in inbox.waiting() {
                 if reception.at <= end {
-                    record_delivery(ActorId(receiver as u32), reception, recorder);
+                    record_delivery::<P>(ActorId(receiver as u32), reception, recorder);
                 } else {
-                    recorder.in_flight(reception.frame.topic);
+                    recorder.in_flight(P::topic(&reception.frame.message));
                 }
             }
         }
@@ -272,17 +269,18 @@ impl<P: Protocol> Air<P> {
 }
 
 fn record_loss<P: Protocol>(receiver: ActorId, frame: &Frame<P::Message>, cause: LossCause, recorder: &mut Recorder) {
-    recorder.lost(receiver, frame.topic, cause, frame.payload_bytes);
-    if P::STATUS == Some(frame.topic) {
+    let topic = P::topic(&frame.message);
+    recorder.lost(receiver, topic, cause, frame.payload_bytes);
+    if P::STATUS == Some(topic) {
         recorder.status_lost(receiver, frame.sender, frame.sequence, cause);
     }
 }
 
-fn record_delivery<M>(receiver: ActorId, reception: &Reception<M>, recorder: &mut Recorder) {
+fn record_delivery<P: Protocol>(receiver: ActorId, reception: &Reception<P::Message>, recorder: &mut Recorder) {
     let frame = &reception.frame;
     recorder.delivered(
         receiver,
-        frame.topic,
+        P::topic(&frame.message),
         frame.payload_bytes,
         reception.at.since(frame.sent_at),
     );

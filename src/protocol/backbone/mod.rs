@@ -42,7 +42,7 @@ use sidestep::Sidestep;
 use view::{Knowledge, View};
 use worker::Worker;
 
-use super::detector::{Detector, DetectorConfig};
+use super::detector::{self, Detector, DetectorConfig};
 use super::gossip::{GossipConfig, Repeat};
 use super::{Input, Note, Output, Protocol, Reception, Topic, Wake};
 use crate::engine::{ActorId, SimTime, Span, Streams};
@@ -178,7 +178,7 @@ impl Backbone {
     fn hear_parent_strand(&mut self, sender: ActorId, strand: &Strand, out: &mut Vec<Message>) {
         let (me, step) = (self.known.id, self.known.step);
         let nowhere = Strand {
-            robots: Vec::new(),
+            robots: Rc::default(),
             ..*strand
         };
         // One that has come too far is no way to the root.
@@ -343,12 +343,8 @@ impl Protocol for Backbone {
     }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
-        for reception in &input.inbox {
-            if matches!(reception.frame.message, Message::Status(_)) {
-                self.known.detector.hear(reception, output);
-            }
-        }
-        if input.wake == Wake::Timer(Detector::TIMER) {
+        self.known.detector.read(&input.inbox, output);
+        if input.wake == Wake::Timer(detector::TIMER) {
             // Believing is all that it does between control steps: what it read, and what follows from a suspicion, wait
             // for the next one.
             self.known.detector.expire(now, output);
@@ -358,8 +354,9 @@ impl Protocol for Backbone {
         self.known.position = input.pose.position;
         let unread = std::mem::take(&mut self.unread);
         for reception in unread.iter().chain(&input.inbox) {
-            if self.knows(&reception.frame.message) {
-                output.notes.push(reception.duplicate());
+            let message = &reception.frame.message;
+            if self.knows(message) {
+                output.notes.push(reception.duplicate(Self::topic(message)));
             }
             self.hear(reception, &mut output.broadcasts);
         }

@@ -29,6 +29,8 @@ const PEERS: Purpose = Purpose::new("rumor.peers");
 const ROUND: Purpose = Purpose::new("rumor.round");
 /// Who begins a rumour, by rumour: one word.
 const SOURCE: Purpose = Purpose::new("rumor.source");
+const RUMOR: Topic = Topic(0);
+const REQUEST: Topic = Topic(1);
 /// The timer of Poisson rounds.
 const NEXT_ROUND: TimerId = TimerId(0);
 
@@ -129,7 +131,7 @@ impl Rumor {
         match reception.frame.message {
             Message::Rumor { to, rumor, .. } if is_for_me(to) => {
                 if self.knows(rumor) {
-                    output.notes.push(reception.duplicate());
+                    output.notes.push(reception.duplicate(RUMOR));
                 } else {
                     self.learn(rumor, reception.at, &mut output.notes);
                 }
@@ -246,10 +248,10 @@ impl Protocol for Rumor {
     const SENSES_PROXIMITY: bool = false;
 
     fn topic(message: &Message) -> Topic {
-        Topic(match message {
-            Message::Rumor { .. } => 0,
-            Message::Request { .. } => 1,
-        })
+        match message {
+            Message::Rumor { .. } => RUMOR,
+            Message::Request { .. } => REQUEST,
+        }
     }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {

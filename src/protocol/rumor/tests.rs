@@ -30,14 +30,13 @@ fn step(robot: &mut Rumor, step: u64, heard: &[(u32, Message)]) -> Output<Messag
     let now = SimTime::ZERO + PERIOD * step;
     let receive = |&(sender, message): &(u32, Message)| Reception {
         at: now,
-        frame: Rc::new(Frame {
+        frame: Frame {
             sender: ActorId(sender),
             sequence: 0,
             sent_at: now,
-            topic: Rumor::topic(&message),
             payload_bytes: 36,
             message,
-        }),
+        },
         displacement: [0.0; 2],
     };
     let mut input = Input {
