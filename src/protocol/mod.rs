@@ -185,7 +185,8 @@ pub enum Note {
     },
     /// It believes so no longer.
     Trusts(ActorId),
-    /// It read a message that told it nothing new: [`Reception::duplicate`].
+    /// It read a message that told it nothing new ([`Reception::duplicate`]), in the role that it had last reported: to be noted
+    /// before a change of role.
     Duplicate {
         /// Its topic.
         topic: Topic,

@@ -209,9 +209,13 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         let help = "make `time_limit` longer than `control.period`";
         found.push(Problem::new("time_limit", message, help).with(&["control.period"]));
     }
-    if matches!(scenario.protocol, ProtocolConfig::Backbone(_)) && hold >= time_limit {
-        let message =
-            format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
+    let held = match scenario.protocol {
+        ProtocolConfig::Backbone(_) => Some("targets must be held"),
+        ProtocolConfig::Rumor(_) => Some("rumours must be known to all"),
+        ProtocolConfig::Heartbeat => None,
+    };
+    if let Some(held) = held.filter(|_| hold >= time_limit) {
+        let message = format!("no trial can complete: {held} for {hold} s, and a trial ends at {time_limit} s");
         let help = "make `time_limit` longer, or `metrics.hold` shorter";
         found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
     }

@@ -160,9 +160,6 @@ impl Rumor {
             rumor: rumor.into(),
             at,
         });
-        if self.known.count_ones() as usize == self.settings.sources.len() {
-            notes.push(Note::Role(Role(1)));
-        }
     }
 
     /// Learns what it is the source of.
@@ -255,6 +252,7 @@ impl Protocol for Rumor {
     }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
+        let knew = self.known;
         for reception in &input.inbox {
             self.hear(reception, output);
         }
@@ -277,6 +275,10 @@ impl Protocol for Rumor {
                 self.set_timer(now, output);
             }
             Wake::Reception => {}
+        }
+        // After the duplicates, which it heard in the role that it had.
+        if self.known != knew && self.known.count_ones() as usize == self.settings.sources.len() {
+            output.notes.push(Note::Role(Role(1)));
         }
     }
 }
