@@ -27,3 +27,4 @@ pub use recorder::{Layout, Recorder, RunEnd};
 pub use spread::RumorSpread;
 pub use statistics::Estimate;
 pub use summary::Summary;
+pub use traffic::HeaderBytes;

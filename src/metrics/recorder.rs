@@ -3,7 +3,7 @@
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::{Change, Subject};
 use crate::geometry::{Pose, Vec2};
-use crate::protocol::{Note, Reception, Topic};
+use crate::protocol::{MessageSize, Note, Reception, Topic};
 use crate::radio::LossCause;
 
 use super::config::MetricsConfig;
@@ -16,7 +16,7 @@ use super::mission::{Hold, Judge, Mission, Progress, Scene};
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
 use super::reports::Reports;
 use super::spread::Spread;
-use super::traffic::Traffic;
+use super::traffic::{HeaderBytes, Traffic};
 
 /// The shape of a run, known before it starts.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +27,8 @@ pub struct Layout {
     pub topics: usize,
     /// Number of roles of the protocol.
     pub roles: usize,
-    /// Bytes that every frame carries beside its payload.
-    pub header_bytes: u16,
+    /// Bytes of headers on air.
+    pub headers: HeaderBytes,
     /// C, the radio's range, metres.
     pub radio_range: f64,
     /// Length of a control step.
@@ -97,7 +97,7 @@ impl Recorder {
             roles: layout.roles,
             radio_range: layout.radio_range,
             control_period: layout.control_period,
-            traffic: Traffic::new(layout.robots, layout.roles, layout.topics, layout.header_bytes),
+            traffic: Traffic::new(layout.robots, layout.roles, layout.topics, layout.headers),
             latency: LatencyHistogram::default(),
             offered: vec![0; layout.topics],
             in_flight: vec![0; layout.topics],
@@ -117,11 +117,11 @@ impl Recorder {
 
     /// `sender` transmitted a frame, however many robots hear it.
     #[inline]
-    pub fn transmitted(&mut self, sender: ActorId, topic: Topic, payload_bytes: u32) {
-        self.traffic.sent(sender, topic, payload_bytes);
+    pub fn transmitted(&mut self, sender: ActorId, topic: Topic, size: MessageSize) {
+        self.traffic.sent(sender, topic, size);
         if self.healing.is_open() {
             let target = self.reports.targets[sender.index()];
-            self.healing.sent(target, topic, payload_bytes);
+            self.healing.sent(target, topic, size.payload_bytes.into());
         }
     }
 
@@ -133,14 +133,14 @@ impl Recorder {
 
     /// A copy meant for `receiver` was lost.
     #[inline]
-    pub fn lost(&mut self, receiver: ActorId, topic: Topic, cause: LossCause, payload_bytes: u32) {
-        self.traffic.lost(receiver, topic, cause, payload_bytes);
+    pub fn lost(&mut self, receiver: ActorId, topic: Topic, cause: LossCause, size: MessageSize) {
+        self.traffic.lost(receiver, topic, cause, size);
     }
 
     /// A copy arrived at `receiver`, `latency` after its transmission began.
     #[inline]
-    pub fn delivered(&mut self, receiver: ActorId, topic: Topic, payload_bytes: u32, latency: Span) {
-        self.traffic.received(receiver, topic, payload_bytes);
+    pub fn delivered(&mut self, receiver: ActorId, topic: Topic, size: MessageSize, latency: Span) {
+        self.traffic.received(receiver, topic, size);
         self.latency.record(latency);
     }
 
@@ -157,7 +157,7 @@ impl Recorder {
     pub fn note(&mut self, robot: ActorId, note: &Note) {
         match *note {
             Note::Role(role) => self.traffic.enter(robot, role),
-            Note::Duplicate { topic, payload_bytes } => self.traffic.duplicate(robot, topic, payload_bytes),
+            Note::Duplicate { topic, size } => self.traffic.duplicate(robot, topic, size),
             Note::Informed { rumor, at } => self.spread.inform(robot, rumor, at),
             _ => {}
         }
@@ -361,7 +361,7 @@ mod tests {
             robots: 3,
             topics: 2,
             roles: 2,
-            header_bytes: 5,
+            headers: HeaderBytes { frame: 2, message: 3 },
             radio_range: RANGE,
             control_period: Span::from_secs(0.1),
             mission,
@@ -391,10 +391,10 @@ mod tests {
     #[test]
     fn a_transmission_with_every_fate_balances_and_is_recorded_at_its_receivers() {
         let mut recorder = recorder(None);
-        recorder.transmitted(ActorId(0), Topic(1), 4);
+        recorder.transmitted(ActorId(0), Topic(1), MessageSize::alone(4));
         recorder.offered(Topic(1), 3);
-        recorder.delivered(ActorId(1), Topic(1), 4, Span::from_secs(0.02));
-        recorder.lost(ActorId(2), Topic(1), LossCause::Channel, 4);
+        recorder.delivered(ActorId(1), Topic(1), MessageSize::alone(4), Span::from_secs(0.02));
+        recorder.lost(ActorId(2), Topic(1), LossCause::Channel, MessageSize::alone(4));
         recorder.in_flight(Topic(1));
         let record = recorder.finish(end());
         let mut expected = TopicFates {
@@ -422,9 +422,9 @@ mod tests {
         let mut recorder = recorder(None);
         recorder.offered(Topic(0), 10);
         for _ in 0..2 {
-            recorder.delivered(ActorId(1), Topic(0), 4, Span::ZERO);
+            recorder.delivered(ActorId(1), Topic(0), MessageSize::alone(4), Span::ZERO);
         }
-        recorder.lost(ActorId(2), Topic(0), LossCause::Channel, 4);
+        recorder.lost(ActorId(2), Topic(0), LossCause::Channel, MessageSize::alone(4));
         recorder.in_flight(Topic(0));
         let _ = recorder.finish(end());
     }

@@ -84,18 +84,38 @@ pub struct Input<M> {
     pub random: Philox,
 }
 
-/// A frame as its receivers get it: decoded once, for its bytes are the same at every receiver, and then copied into each
+/// How long a message is on air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MessageSize {
+    /// Its payload in bytes, headers not included.
+    pub payload_bytes: u16,
+    /// Whether it rides in a frame that another message before it began: then that one answers for the frame's header.
+    pub rides: bool,
+}
+
+impl MessageSize {
+    /// Of a message in a frame of its own.
+    #[must_use]
+    pub const fn alone(payload_bytes: u16) -> Self {
+        Self {
+            payload_bytes,
+            rides: false,
+        }
+    }
+}
+
+/// A message as its receivers get it: decoded once, for its bytes are the same at every receiver, and then copied into each
 /// inbox, so that reading an inbox is reading one stretch of memory.
 #[derive(Clone, Debug)]
 pub struct Frame<M> {
     /// Who sent it (the frame's header carries it).
     pub sender: ActorId,
-    /// Its number among the sender's frames.
+    /// Its number among the sender's messages, which is that of its frame where each has one of its own.
     pub sequence: u32,
     /// When its transmission began.
     pub sent_at: SimTime,
-    /// Length of its payload in bytes, header not included.
-    pub payload_bytes: u32,
+    /// How long it is.
+    pub size: MessageSize,
     /// What its payload says.
     pub message: M,
 }
@@ -118,7 +138,7 @@ impl<M> Reception<M> {
     pub const fn duplicate(&self, topic: Topic) -> Note {
         Note::Duplicate {
             topic,
-            payload_bytes: self.frame.payload_bytes,
+            size: self.frame.size,
         }
     }
 
@@ -190,8 +210,8 @@ pub enum Note {
     Duplicate {
         /// Its topic.
         topic: Topic,
-        /// Its payload in bytes.
-        payload_bytes: u32,
+        /// How long it is.
+        size: MessageSize,
     },
     /// It knows this rumour since then.
     Informed {

@@ -11,7 +11,7 @@ use super::run::{Rhythm, Run};
 use crate::engine::{ActorId, Actors, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
 use crate::geometry::Pose;
-use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};
+use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, PhaseConfig, WakeConfig};
 use crate::protocol::detector::DetectorConfig;
@@ -59,6 +59,8 @@ pub struct Setup {
     pub control: ControlConfig,
     /// The radio.
     pub radio: RadioConfig,
+    /// Whether all messages of a wake go out in one frame.
+    pub piggyback: bool,
     /// How robots and links fail.
     pub faults: Vec<FaultConfig>,
     /// What is measured.
@@ -128,6 +130,7 @@ impl Setup {
         let air = Air::<P>::new(
             Medium::new(&self.radio, &streams, robots),
             robots,
+            self.piggyback,
             rhythm.wake_on_reception,
         );
         let recorder = Recorder::new(self.layout::<P>(robots), &self.metrics);
@@ -151,7 +154,10 @@ impl Setup {
             robots,
             topics: P::TOPICS.len(),
             roles: P::ROLES.len(),
-            header_bytes: self.radio.header_bytes,
+            headers: HeaderBytes {
+                frame: self.radio.frame_header_bytes,
+                message: self.radio.message_header_bytes,
+            },
             radio_range: self.radio.range.get(),
             control_period: Span::from_secs(self.control.period.get()),
             mission: self.mission.clone(),

@@ -78,7 +78,7 @@ impl Detector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::protocol::{Frame, Note};
+    use crate::protocol::{Frame, MessageSize, Note};
     use crate::quantity::Positive;
 
     const TIMEOUT_S: f64 = 2.5;
@@ -108,7 +108,7 @@ mod tests {
                 sender: ActorId(sender),
                 sequence,
                 sent_at: SimTime::ZERO,
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: Alive,
             },
             displacement: [0.0; 2],

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::Pose;
-use crate::protocol::Frame;
+use crate::protocol::{Frame, MessageSize};
 use crate::protocol::gossip::{RelayConfig, RetransmitConfig};
 
 const PERIOD: Span = Span::from_nanos(100_000_000);
@@ -34,7 +34,7 @@ fn step(robot: &mut Rumor, step: u64, heard: &[(u32, Message)]) -> Output<Messag
             sender: ActorId(sender),
             sequence: 0,
             sent_at: now,
-            payload_bytes: 36,
+            size: MessageSize::alone(36),
             message,
         },
         displacement: [0.0; 2],
@@ -74,7 +74,7 @@ fn a_rumour_is_learnt_once_heard_again_it_is_a_duplicate_and_all_make_a_robot_in
     let heard = [(0, rumor(None, 0)), (1, rumor(Some(5), 0)), (1, rumor(Some(6), 2))];
     let duplicate = Note::Duplicate {
         topic: Topic(0),
-        payload_bytes: 36,
+        size: MessageSize::alone(36),
     };
     assert_eq!(step(&mut robot, 0, &heard).notes, [informed(0, 0), duplicate]);
     let rest = step(&mut robot, 1, &[(0, rumor(None, 1)), (3, rumor(None, 2))]);

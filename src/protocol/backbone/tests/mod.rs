@@ -3,7 +3,7 @@
 mod healing;
 
 use super::*;
-use crate::protocol::{Frame, TimerId};
+use crate::protocol::{Frame, MessageSize, TimerId};
 use rand_philox::Philox;
 
 const ROOT: u32 = 0;
@@ -56,7 +56,7 @@ impl Bench {
                 sender: ActorId(*sender),
                 sequence: self.sequence,
                 sent_at: now,
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: message.clone(),
             },
             displacement: [(x - self.x) as f32, 0.0],
