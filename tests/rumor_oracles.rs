@@ -18,7 +18,9 @@ fn scenario(more: &str) -> Scenario {
 
 fn run(scenario: &Scenario, trials: u32) -> Vec<TrialRecord> {
     let trial = |trial| run_trial(scenario, trial, DriverKind::Inline, &Default::default());
-    (0..trials).map(|number| trial(number).expect("a trial runs to its end")).collect()
+    (0..trials)
+        .map(|number| trial(number).expect("a trial runs to its end"))
+        .collect()
 }
 
 fn time_to_all(record: &TrialRecord) -> f64 {
@@ -31,7 +33,9 @@ fn time_to_all(record: &TrialRecord) -> f64 {
 fn epidemic(rate: f64) -> (f64, f64) {
     let robots = f64::from(ROBOTS);
     let stages = (1..ROBOTS).map(|n| (robots - 1.0) / (rate * f64::from(n) * (robots - f64::from(n))));
-    stages.fold((0.0, 0.0), |(mean, variance), stage| (mean + stage, variance + stage * stage))
+    stages.fold((0.0, 0.0), |(mean, variance), stage| {
+        (mean + stage, variance + stage * stage)
+    })
 }
 
 #[test]
@@ -53,9 +57,15 @@ fn pushed_at_poisson_times_to_a_uniform_peer_a_rumour_takes_the_time_of_the_si_e
     let times: Vec<f64> = run(&scenario, 200).iter().map(time_to_all).collect();
     let mean = times.iter().sum::<f64>() / 200.0;
     let (expected, variance) = epidemic(1.0);
-    assert!((mean - expected).abs() < 4.0 * (variance / 200.0).sqrt(), "{mean} for {expected}");
+    assert!(
+        (mean - expected).abs() < 4.0 * (variance / 200.0).sqrt(),
+        "{mean} for {expected}"
+    );
     let spread = times.iter().map(|time| (time - mean).powi(2)).sum::<f64>() / 199.0;
-    assert!((spread / variance - 1.0).abs() < 4.0 * 0.124, "variance {spread} for {variance}");
+    assert!(
+        (spread / variance - 1.0).abs() < 4.0 * 0.124,
+        "variance {spread} for {variance}"
+    );
 }
 
 /// The stages are the same read the other way round: one of the N − n asks at rate β, and meets one of the n with
@@ -70,7 +80,10 @@ fn pulled_it_takes_as_long_at_the_rate_at_which_both_request_and_answer_arrive()
     let times: Vec<f64> = run(&scenario, 200).iter().map(time_to_all).collect();
     let mean = times.iter().sum::<f64>() / 200.0;
     let (expected, variance) = epidemic(1.0);
-    assert!((mean - expected).abs() < 4.0 * (variance / 200.0).sqrt(), "{mean} for {expected}");
+    assert!(
+        (mean - expected).abs() < 4.0 * (variance / 200.0).sqrt(),
+        "{mean} for {expected}"
+    );
 }
 
 /// All 19 others hear each of the rounds' broadcasts with probability 0.5, so in a round of one source alone the number
@@ -92,7 +105,9 @@ fn a_broadcast_informs_each_robot_in_range_with_the_probability_that_it_arrives(
 fn what_robots_hear_twice_is_counted_and_a_finished_rumour_ends_the_trial() {
     let scenario = scenario("protocol: Rumor(), gossip: (relay: (interval: 0.1))");
     for record in run(&scenario, 5) {
-        let Outcome::Completed { step } = record.outcome else { panic!("{:?}", record.outcome) };
+        let Outcome::Completed { step } = record.outcome else {
+            panic!("{:?}", record.outcome)
+        };
         assert_eq!(record.steps, step + 1, "it is not held");
         let received: u64 = record.traffic.iter().map(|row| row.received.frames).sum();
         let duplicate: u64 = record.traffic.iter().map(|row| row.duplicate.frames).sum();

@@ -23,7 +23,12 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
     let setup = setup(workload);
     let period = Span::from_secs(PERIOD_S);
     let detector = DetectorConfig::Timeout(Positive::new(TIMEOUT_S));
-    let settings = Rc::new(Settings::new(&GossipConfig::default(), &detector, period, Streams::new(SEED, 0)));
+    let settings = Rc::new(Settings::new(
+        &GossipConfig::default(),
+        &detector,
+        period,
+        Streams::new(SEED, 0),
+    ));
     let robots = workload
         .poses
         .iter()

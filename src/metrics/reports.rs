@@ -39,10 +39,13 @@ impl Reports {
                 }
                 self.parents[robot.index()].clone_from(parents);
             }
-            // Beliefs about failures change nothing of the traffic, the graph or the mission.
-            Note::Watches(_) | Note::Suspects { .. } | Note::Trusts(_) => {}
-            // Nor does what was heard twice; who knows what is kept apart.
-            Note::Duplicate { .. } | Note::Informed { .. } => {}
+            // Beliefs about failures change nothing of the traffic, the graph or the mission; what was heard twice and who
+            // knows what are kept elsewhere.
+            Note::Watches(_)
+            | Note::Suspects { .. }
+            | Note::Trusts(_)
+            | Note::Duplicate { .. }
+            | Note::Informed { .. } => {}
         }
     }
 

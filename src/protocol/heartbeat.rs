@@ -93,7 +93,9 @@ impl Protocol for Heartbeat {
             Wake::Timer(_) => self.detector.expire(now, output),
             Wake::ControlStep => {
                 let settings = &self.settings;
-                output.velocity = self.wander.velocity(&settings.ground, self.id, now, input.pose.position);
+                output.velocity = self
+                    .wander
+                    .velocity(&settings.ground, self.id, now, input.pose.position);
                 if settings.status_turns.is_due(self.id, self.control_steps) {
                     output.broadcasts.push(Status { number: self.sent });
                     self.sent = self.sent.wrapping_add(1);

@@ -182,7 +182,10 @@ mod tests {
         let places = walk(config, 3, 20);
         let steps: Vec<Vec2> = places.windows(2).map(|pair| pair[1] - pair[0]).collect();
         assert!(steps.iter().all(|step| (step.norm() - 0.02).abs() < 1e-9));
-        let turns = steps.windows(2).filter(|pair| (pair[1] - pair[0]).norm() > 1e-6).count();
+        let turns = steps
+            .windows(2)
+            .filter(|pair| (pair[1] - pair[0]).norm() > 1e-6)
+            .count();
         assert_eq!(turns, 19);
     }
 
@@ -191,7 +194,7 @@ mod tests {
         let places = walk(waypoint(0.0), 3, 400);
         assert!(places.iter().all(|place| place.x.abs() <= 4.0 && place.y.abs() <= 3.0));
         assert_ne!(places.last(), walk(waypoint(0.0), 4, 400).last());
-        let widest = places.iter().map(|place| place.norm()).fold(0.0, f64::max);
+        let widest = places.iter().map(Vec2::norm).fold(0.0, f64::max);
         assert!(widest > 2.0, "{widest}");
     }
 

@@ -19,7 +19,11 @@ pub fn section(page: &mut Page, summary: &Summary) {
 }
 
 fn took(time: &SpreadTime) -> String {
-    let median = format!("{}: Kaplan–Meier median of {} trials", estimate(&time.median, seconds), time.median.n);
+    let median = format!(
+        "{}: Kaplan–Meier median of {} trials",
+        estimate(&time.median, seconds),
+        time.median.n
+    );
     match time.mean.value {
         Some(_) => format!("{median}; {} on average", estimate(&time.mean, seconds)),
         None => median,

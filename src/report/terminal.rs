@@ -241,7 +241,10 @@ fn radio(page: &mut Page, summary: &Summary) {
     page.entry("offered", &balance);
     if let Some(duplicates) = &summary.duplicates {
         let share = estimate(&duplicates.total, percent);
-        page.entry("duplicates", &format!("{share} of what was delivered told its receiver nothing new"));
+        page.entry(
+            "duplicates",
+            &format!("{share} of what was delivered told its receiver nothing new"),
+        );
     }
 }
 

@@ -235,7 +235,12 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
     };
     let positions = robots * samples;
     let gossip = &scenario.gossip;
-    let intervals = [gossip.status.interval, gossip.strand.interval, gossip.request.interval, gossip.relay.interval];
+    let intervals = [
+        gossip.status.interval,
+        gossip.strand.interval,
+        gossip.request.interval,
+        gossip.relay.interval,
+    ];
     let shortest = intervals
         .into_iter()
         .map(Positive::get)

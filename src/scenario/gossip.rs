@@ -3,8 +3,8 @@
 use crate::engine::Span;
 use crate::protocol::backbone::BackboneConfig;
 use crate::protocol::gossip::{
-    FanOutConfig, GossipConfig, RelayConfig, RequestConfig, RetransmitConfig, SendConfig, StrandConfig, TimeToLiveConfig,
-    Timing, TopicConfig,
+    FanOutConfig, GossipConfig, RelayConfig, RequestConfig, RetransmitConfig, SendConfig, StrandConfig,
+    TimeToLiveConfig, Timing, TopicConfig,
 };
 use crate::protocol::wander::WanderConfig;
 
@@ -48,14 +48,22 @@ fn unheeded(scenario: &Scenario) -> Vec<Problem> {
         ProtocolConfig::Backbone(_) => (
             "Backbone",
             &[
-                ("gossip.relay.fan_out", relay.fan_out != FanOutConfig::Everyone, "its orders are for everyone"),
+                (
+                    "gossip.relay.fan_out",
+                    relay.fan_out != FanOutConfig::Everyone,
+                    "its orders are for everyone",
+                ),
                 ("wander", !still, "it says itself how robots move"),
             ],
         ),
         ProtocolConfig::Heartbeat => (
             "Heartbeat",
             &[
-                ("gossip.status.send", !always, "each of its statuses has a new number, and so has changed"),
+                (
+                    "gossip.status.send",
+                    !always,
+                    "each of its statuses has a new number, and so has changed",
+                ),
                 ("gossip.strand", strand_set, "it has no strands"),
                 ("gossip.request", request_set, "it has no requests"),
                 ("gossip.relay", relay_set, "it passes nothing on"),
@@ -67,7 +75,11 @@ fn unheeded(scenario: &Scenario) -> Vec<Problem> {
             &[
                 ("gossip.status", status_set, "it has no statuses"),
                 ("gossip.strand", strand_set, "it has no strands"),
-                ("gossip.request", request_set, "its requests go out with its rounds: see `gossip.relay`"),
+                (
+                    "gossip.request",
+                    request_set,
+                    "its requests go out with its rounds: see `gossip.relay`",
+                ),
                 ("detector", detector_set, "it runs no failure detector"),
             ],
         ),
@@ -83,9 +95,24 @@ fn of_topics(scenario: &Scenario) -> Vec<Problem> {
     let gossip = &scenario.gossip;
     let period = control_period(scenario);
     let topics: [(&str, f64, Timing, Option<SendConfig>); 4] = [
-        ("status", gossip.status.jitter.get(), gossip.status.timing(period), Some(gossip.status.send)),
-        ("strand", gossip.strand.jitter.get(), gossip.strand.timing(period), Some(gossip.strand.send)),
-        ("request", gossip.request.jitter.get(), gossip.request.timing(period), None),
+        (
+            "status",
+            gossip.status.jitter.get(),
+            gossip.status.timing(period),
+            Some(gossip.status.send),
+        ),
+        (
+            "strand",
+            gossip.strand.jitter.get(),
+            gossip.strand.timing(period),
+            Some(gossip.strand.send),
+        ),
+        (
+            "request",
+            gossip.request.jitter.get(),
+            gossip.request.timing(period),
+            None,
+        ),
         ("relay", gossip.relay.jitter.get(), gossip.relay.timing(period), None),
     ];
     let mut found = Vec::new();
@@ -123,11 +150,19 @@ fn of_topics(scenario: &Scenario) -> Vec<Problem> {
     }
     if gossip.relay.retransmit == RetransmitConfig::Multiplier(0) {
         let help = "make it at least 1, or use Unlimited";
-        found.push(Problem::new("gossip.relay.retransmit", "a multiplier of 0 passes nothing on", help));
+        found.push(Problem::new(
+            "gossip.relay.retransmit",
+            "a multiplier of 0 passes nothing on",
+            help,
+        ));
     }
     if gossip.relay.fan_out == FanOutConfig::Peers(0) {
         let help = "make it at least 1, or use Everyone";
-        found.push(Problem::new("gossip.relay.fan_out", "a fan-out of 0 addresses nobody", help));
+        found.push(Problem::new(
+            "gossip.relay.fan_out",
+            "a fan-out of 0 addresses nobody",
+            help,
+        ));
     }
     found
 }
@@ -138,8 +173,16 @@ fn strands(scenario: &Scenario, backbone: &BackboneConfig) -> Vec<Problem> {
     let period = control_period(scenario);
     let pause = (period * strand.repetition(period).longest_pause()).as_secs();
     let mut bounds = vec![
-        ("protocol.recruiting.join_timeout", backbone.recruiting.join_timeout.get(), "a join without a sign is undone"),
-        ("protocol.healing.patience", backbone.healing.patience.get(), "the root forgets a chain"),
+        (
+            "protocol.recruiting.join_timeout",
+            backbone.recruiting.join_timeout.get(),
+            "a join without a sign is undone",
+        ),
+        (
+            "protocol.healing.patience",
+            backbone.healing.patience.get(),
+            "the root forgets a chain",
+        ),
     ];
     if let TimeToLiveConfig::Seconds(seconds) = strand.time_to_live {
         bounds.push(("gossip.strand.time_to_live", seconds.get(), "a strand counts no more"));
@@ -155,7 +198,10 @@ fn strands(scenario: &Scenario, backbone: &BackboneConfig) -> Vec<Problem> {
     let robots = backbone.longest_chain();
     if usize::from(strand.hop_limit) < robots {
         let path = "gossip.strand.hop_limit";
-        let message = format!("no strand may name more than {} robots, but the longest chain has {robots}", strand.hop_limit);
+        let message = format!(
+            "no strand may name more than {} robots, but the longest chain has {robots}",
+            strand.hop_limit
+        );
         let help = format!("make `{path}` at least {robots}");
         found.push(Problem::new(path, message, help).with(&["protocol.targets"]));
     }
@@ -198,10 +244,18 @@ mod tests {
     fn a_setting_that_the_protocol_does_not_heed_is_refused_by_name() {
         for (protocol, sections, field) in [
             ("Heartbeat", "gossip: (piggyback: true)", "gossip.piggyback"),
-            ("Heartbeat", "gossip: (status: (send: OnChange(max_interval: 1.0)))", "gossip.status.send"),
+            (
+                "Heartbeat",
+                "gossip: (status: (send: OnChange(max_interval: 1.0)))",
+                "gossip.status.send",
+            ),
             ("Heartbeat", "gossip: (strand: (hop_limit: 9))", "gossip.strand"),
             ("Heartbeat", "gossip: (request: (interval: 0.2))", "gossip.request"),
-            ("Heartbeat", "gossip: (relay: (retransmit: Multiplier(4)))", "gossip.relay"),
+            (
+                "Heartbeat",
+                "gossip: (relay: (retransmit: Multiplier(4)))",
+                "gossip.relay",
+            ),
             (BACKBONE, "gossip: (relay: (fan_out: Peers(3)))", "gossip.relay.fan_out"),
             (BACKBONE, "wander: RandomWaypoint(speed: 0.02)", "wander"),
             (RUMOR, "gossip: (status: (interval: 0.2))", "gossip.status"),
@@ -211,21 +265,30 @@ mod tests {
         ] {
             let found = messages(protocol, sections);
             let expected = format!("`{field}` is set, but the protocol");
-            assert!(found.iter().any(|message| message.starts_with(&expected)), "{sections}: {found:?}");
+            assert!(
+                found.iter().any(|message| message.starts_with(&expected)),
+                "{sections}: {found:?}"
+            );
         }
     }
 
     #[test]
     fn settings_that_a_protocol_heeds_are_accepted() {
         for (protocol, sections) in [
-            ("Heartbeat", "gossip: (status: (interval: 0.5, jitter: 0.5)), wander: RandomWalk(speed: 0.02, leg: 5.0)"),
+            (
+                "Heartbeat",
+                "gossip: (status: (interval: 0.5, jitter: 0.5)), wander: RandomWalk(speed: 0.02, leg: 5.0)",
+            ),
             (
                 BACKBONE,
                 "gossip: (status: (send: OnChange(max_interval: 0.4, repetition: 2)), piggyback: true,
                  strand: (interval: 0.2, jitter: 1.0, time_to_live: Seconds(3.0), hop_limit: 3),
                  relay: (interval: 0.5, retransmit: Multiplier(4)))",
             ),
-            (RUMOR, "gossip: (relay: (fan_out: Peers(39), retransmit: Multiplier(1)), piggyback: true)"),
+            (
+                RUMOR,
+                "gossip: (relay: (fan_out: Peers(39), retransmit: Multiplier(1)), piggyback: true)",
+            ),
         ] {
             assert_eq!(messages(protocol, sections), [] as [String; 0], "{sections}");
         }
@@ -234,26 +297,77 @@ mod tests {
     #[test]
     fn what_settings_together_make_meaningless_is_refused_with_the_numbers() {
         for (protocol, sections, expected) in [
-            ("Heartbeat", "gossip: (status: (interval: 0.3, jitter: 0.5))", "moves nothing"),
-            (BACKBONE, "gossip: (status: (send: OnChange(max_interval: 0.1)))", "turns are 0.1 s apart"),
-            (BACKBONE, "gossip: (status: (send: OnChange(max_interval: 9.0)))", "they come every 9 s"),
-            (BACKBONE, "gossip: (status: (interval: 2.0, send: OnChange(max_interval: 4.0)))", "they come every 4 s"),
-            (BACKBONE, "gossip: (strand: (send: OnChange(max_interval: 5.0)))", "after 4 s a join without a sign is undone"),
-            (BACKBONE, "gossip: (strand: (send: OnChange(max_interval: 2.0, repetition: 0)))", "0 times"),
-            (BACKBONE, "gossip: (strand: (interval: 0.5, time_to_live: Seconds(0.5)))", "after 0.5 s a strand counts no more"),
+            (
+                "Heartbeat",
+                "gossip: (status: (interval: 0.3, jitter: 0.5))",
+                "moves nothing",
+            ),
+            (
+                BACKBONE,
+                "gossip: (status: (send: OnChange(max_interval: 0.1)))",
+                "turns are 0.1 s apart",
+            ),
+            (
+                BACKBONE,
+                "gossip: (status: (send: OnChange(max_interval: 9.0)))",
+                "they come every 9 s",
+            ),
+            (
+                BACKBONE,
+                "gossip: (status: (interval: 2.0, send: OnChange(max_interval: 4.0)))",
+                "they come every 4 s",
+            ),
+            (
+                BACKBONE,
+                "gossip: (strand: (send: OnChange(max_interval: 5.0)))",
+                "after 4 s a join without a sign is undone",
+            ),
+            (
+                BACKBONE,
+                "gossip: (strand: (send: OnChange(max_interval: 2.0, repetition: 0)))",
+                "0 times",
+            ),
+            (
+                BACKBONE,
+                "gossip: (strand: (interval: 0.5, time_to_live: Seconds(0.5)))",
+                "after 0.5 s a strand counts no more",
+            ),
             (BACKBONE, "gossip: (strand: (hop_limit: 2))", "the longest chain has 3"),
-            (BACKBONE, "gossip: (relay: (retransmit: Multiplier(0)))", "passes nothing on"),
-            ("Rumor()", "gossip: (relay: (fan_out: Peers(40)))", "has 39 others to address, not 40"),
+            (
+                BACKBONE,
+                "gossip: (relay: (retransmit: Multiplier(0)))",
+                "passes nothing on",
+            ),
+            (
+                "Rumor()",
+                "gossip: (relay: (fan_out: Peers(40)))",
+                "has 39 others to address, not 40",
+            ),
             ("Rumor()", "gossip: (relay: (fan_out: Peers(0)))", "addresses nobody"),
-            ("Rumor(mode: Pull)", "gossip: (relay: (retransmit: Multiplier(2)))", "are not pushed"),
+            (
+                "Rumor(mode: Pull)",
+                "gossip: (relay: (retransmit: Multiplier(2)))",
+                "are not pushed",
+            ),
             (RUMOR, "gossip: (relay: (jitter: 1.0))", "random already"),
             ("Rumor(sources: Robots([40]))", "", "robots are numbered from 0 to 39"),
             ("Rumor(sources: Random(65))", "", "there must be 1 to 64"),
-            ("Rumor()", "metrics: (hold: 60.0)", "rumours must be known to all for 60 s"),
-            ("Heartbeat", "wander: RandomWalk(speed: 1.0, leg: 5.0)", "faster than they can go"),
+            (
+                "Rumor()",
+                "metrics: (hold: 60.0)",
+                "rumours must be known to all for 60 s",
+            ),
+            (
+                "Heartbeat",
+                "wander: RandomWalk(speed: 1.0, leg: 5.0)",
+                "faster than they can go",
+            ),
         ] {
             let found = messages(protocol, sections);
-            assert!(found.iter().any(|message| message.contains(expected)), "{sections}: {found:?}");
+            assert!(
+                found.iter().any(|message| message.contains(expected)),
+                "{sections}: {found:?}"
+            );
         }
     }
 }

@@ -192,8 +192,16 @@ fn healing(trial: u32) -> Vec<HealingEpisode> {
 fn spread(trial: u32) -> Vec<RumorSpread> {
     let at = |rumor: u32, robot: u32| SimTime::from_secs(f64::from(robot * (rumor + 3) + trial) / 7.0);
     let reaches = |rumor, robot| trial > 0 || rumor == 0 || robot + 1 < ROBOTS;
-    let informed = |rumor| (0..ROBOTS).map(|robot| reaches(rumor, robot).then(|| at(rumor, robot))).collect();
-    (0..2).map(|rumor| RumorSpread { informed: informed(rumor) }).collect()
+    let informed = |rumor| {
+        (0..ROBOTS)
+            .map(|robot| reaches(rumor, robot).then(|| at(rumor, robot)))
+            .collect()
+    };
+    (0..2)
+        .map(|rumor| RumorSpread {
+            informed: informed(rumor),
+        })
+        .collect()
 }
 
 fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {

@@ -18,8 +18,8 @@ mod repeat;
 mod turns;
 
 pub use config::{
-    FanOutConfig, GossipConfig, RelayConfig, RequestConfig, RetransmitConfig, SendConfig, StrandConfig, TimeToLiveConfig,
-    TopicConfig,
+    FanOutConfig, GossipConfig, RelayConfig, RequestConfig, RetransmitConfig, SendConfig, StrandConfig,
+    TimeToLiveConfig, TopicConfig,
 };
 pub use repeat::{Repeat, Repetition};
 pub use turns::{Timing, Turns};

@@ -107,7 +107,11 @@ mod tests {
     #[test]
     fn without_jitter_a_turn_comes_at_the_first_step_of_every_interval() {
         assert_eq!(turns(0.1, 0.0, 3, 4), [0, 1, 2, 3]);
-        assert_eq!(turns(0.25, 0.0, 3, 10), [0, 3, 6, 9], "rounded up to whole control periods");
+        assert_eq!(
+            turns(0.25, 0.0, 3, 10),
+            [0, 3, 6, 9],
+            "rounded up to whole control periods"
+        );
     }
 
     proptest! {
@@ -145,7 +149,9 @@ mod tests {
         let timing = Timing::new(Positive::new(1.0), Probability::new(1.0), STEP);
         let of = |topic, robot| {
             let turns = Turns::new(timing, topic, Streams::new(7, 0));
-            (0..200).filter(|&step| turns.is_due(ActorId(robot), step)).collect::<Vec<u64>>()
+            (0..200)
+                .filter(|&step| turns.is_due(ActorId(robot), step))
+                .collect::<Vec<u64>>()
         };
         assert_ne!(of(0, 0), of(0, 1));
         assert_ne!(of(0, 0), of(1, 0));

@@ -102,14 +102,23 @@ impl RumorConfig {
         {
             problem(
                 "sources",
-                format!("robot {stranger} begins a rumour, but robots are numbered from 0 to {}", robots.saturating_sub(1)),
+                format!(
+                    "robot {stranger} begins a rumour, but robots are numbered from 0 to {}",
+                    robots.saturating_sub(1)
+                ),
             );
         }
         if robots > MOST_ROBOTS {
             problem("", format!("{robots} robots; messages can name at most {MOST_ROBOTS}"));
         }
         if self.size > 60_000 {
-            problem("size", format!("a rumour of {} bytes does not fit into a frame; at most 60000 do", self.size));
+            problem(
+                "size",
+                format!(
+                    "a rumour of {} bytes does not fit into a frame; at most 60000 do",
+                    self.size
+                ),
+            );
         }
         problems
     }
@@ -125,7 +134,10 @@ impl RumorConfig {
         {
             problem(
                 "fan_out",
-                format!("a robot has {} others to address, not {peers}; lower it, or use Everyone", robots.saturating_sub(1)),
+                format!(
+                    "a robot has {} others to address, not {peers}; lower it, or use Everyone",
+                    robots.saturating_sub(1)
+                ),
             );
         }
         if self.mode == Mode::Pull && relay.retransmit != RetransmitConfig::Unlimited {

@@ -104,7 +104,9 @@ impl Decoder for RumorCodec {
             REQUEST => {
                 let mut known = [0; 8];
                 let given = bytes.len() as u8;
-                let held = known.get_mut(..bytes.len()).ok_or(unknown("number of rumour bytes", given))?;
+                let held = known
+                    .get_mut(..bytes.len())
+                    .ok_or(unknown("number of rumour bytes", given))?;
                 bytes.copy_to_slice(held);
                 let known = u64::from_le_bytes(known);
                 Ok(Some(Message::Request { to, known }))

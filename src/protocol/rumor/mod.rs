@@ -93,7 +93,9 @@ pub fn swarm(
         contacts: streams.keyed(ROUND),
         ground,
     });
-    (0..robots).map(|id| Rumor::new(ActorId(id), Rc::clone(&settings))).collect()
+    (0..robots)
+        .map(|id| Rumor::new(ActorId(id), Rc::clone(&settings)))
+        .collect()
 }
 
 fn sources(config: &SourcesConfig, robots: u32, streams: Streams) -> Vec<ActorId> {
@@ -259,7 +261,9 @@ impl Protocol for Rumor {
         match input.wake {
             Wake::ControlStep => {
                 let settings = Rc::clone(&self.settings);
-                output.velocity = self.wander.velocity(&settings.ground, self.id, now, input.pose.position);
+                output.velocity = self
+                    .wander
+                    .velocity(&settings.ground, self.id, now, input.pose.position);
                 if self.control_steps == 0 {
                     self.begin(now, &mut output.notes);
                     self.set_timer(now, output);

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::geometry::Pose;
-use crate::protocol::{Frame, MessageSize};
 use crate::protocol::gossip::{RelayConfig, RetransmitConfig};
+use crate::protocol::{Frame, MessageSize};
 
 const PERIOD: Span = Span::from_nanos(100_000_000);
 
@@ -91,7 +91,11 @@ fn who_is_asked_answers_the_asker_with_what_it_lacks_and_who_overhears_does_not(
         known: 0b101,
     };
     assert_eq!(step(&mut robots[0], 1, &[(4, request)]).broadcasts, [rumor(Some(4), 1)]);
-    assert_eq!(step(&mut robots[3], 1, &[(4, request)]).broadcasts.len(), 1, "its own request");
+    assert_eq!(
+        step(&mut robots[3], 1, &[(4, request)]).broadcasts.len(),
+        1,
+        "its own request"
+    );
 }
 
 /// memberlist's retransmits for 20 robots: 4 ⌈log₁₀ 21⌉ = 8.
@@ -134,7 +138,9 @@ fn every_other_robot_is_as_likely_to_be_addressed_none_twice_in_a_round_and_neve
 fn poisson_rounds_are_exponentially_apart() {
     let robots = robots(Mode::Push, RelayConfig::default());
     let settings = &robots[0].settings;
-    let pauses: Vec<f64> = (0..4000).map(|round| settings.pause(ActorId(0), round).as_secs()).collect();
+    let pauses: Vec<f64> = (0..4000)
+        .map(|round| settings.pause(ActorId(0), round).as_secs())
+        .collect();
     let mean = pauses.iter().sum::<f64>() / 4000.0;
     assert!((mean - 1.0).abs() < 0.063, "{mean}");
     let long = pauses.iter().filter(|pause| **pause > 1.0).count() as f64 / 4000.0;
