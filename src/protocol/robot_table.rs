@@ -22,6 +22,9 @@ pub struct RobotTable<R> {
 
 const VACANT: u32 = u32::MAX;
 
+/// Room for a few neighbours at once: a table that grows from one is moved four times on the way.
+const FEWEST_SLOTS: usize = 32;
+
 impl<R> Default for RobotTable<R> {
     fn default() -> Self {
         Self {
@@ -52,6 +55,7 @@ impl<R: RobotRow> RobotTable<R> {
         debug_assert!(self.get(row.robot()).is_none(), "a robot has one row");
         if 2 * (self.rows.len() + 1) > self.slots.len() {
             self.grow();
+            self.rows.reserve(self.slots.len() / 2 - self.rows.len());
         }
         let slot = self.slot_of(row.robot());
         self.slots[slot] = self.rows.len() as u32;
@@ -142,7 +146,7 @@ impl<R: RobotRow> RobotTable<R> {
     }
 
     fn grow(&mut self) {
-        let slots = (2 * self.slots.len()).max(8);
+        let slots = (2 * self.slots.len()).max(FEWEST_SLOTS);
         self.slots.clear();
         self.slots.resize(slots, VACANT);
         for row in 0..self.rows.len() {

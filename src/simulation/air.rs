@@ -55,6 +55,8 @@ pub struct Air<P: Protocol> {
     reachable: Vec<Listener>,
     /// Since when each robot has been unable to hear; `NEVER` if it hears.
     deaf_since: Vec<SimTime>,
+    /// How many robots cannot hear: while all do, nobody is looked up in `deaf_since`.
+    deaf: usize,
     /// Receivers whose next arrival may have come forward, for scenarios that wake robots on reception.
     reached: Vec<ActorId>,
     tell_reached: bool,
@@ -77,6 +79,7 @@ impl<P: Protocol> Air<P> {
             hindrances: Vec::new(),
             reachable: Vec::new(),
             deaf_since: vec![SimTime::NEVER; robots],
+            deaf: 0,
             reached: Vec::new(),
             tell_reached: wake_on_reception,
         }
@@ -232,17 +235,28 @@ impl<P: Protocol> Air<P> {
     /// From `now` on `receiver` can hear or not. A copy is lost if its receiver cannot hear at the instant of its arrival;
     /// one that arrived before can still be read.
     pub fn set_hearing(&mut self, now: SimTime, receiver: ActorId, hears: bool, recorder: &mut Recorder) {
-        let since = self.deaf_since[receiver.index()];
+        if hears == self.hears(receiver) {
+            return;
+        }
         if hears {
             self.lose_unheard(now, receiver, recorder);
             self.deaf_since[receiver.index()] = SimTime::NEVER;
+            self.deaf -= 1;
         } else {
-            self.deaf_since[receiver.index()] = since.min(now);
+            self.deaf_since[receiver.index()] = now;
+            self.deaf += 1;
         }
+    }
+
+    fn hears(&self, receiver: ActorId) -> bool {
+        self.deaf == 0 || self.deaf_since[receiver.index()] == SimTime::NEVER
     }
 
     /// Loses what has arrived at `receiver` before `until` and could not be heard.
     fn lose_unheard(&mut self, until: SimTime, receiver: ActorId, recorder: &mut Recorder) {
+        if self.hears(receiver) {
+            return;
+        }
         let since = self.deaf_since[receiver.index()];
         if since < until {
             self.inboxes[receiver.index()].drop_arrivals(since, until, |reception| {
@@ -280,9 +294,8 @@ impl<P: Protocol> Air<P> {
 
     /// The earliest arrival that still waits for `receiver`; none if it cannot hear.
     pub fn next_arrival(&self, receiver: ActorId) -> SimTime {
-        let hears = self.deaf_since[receiver.index()] == SimTime::NEVER;
         let next = || self.inboxes[receiver.index()].next_arrival();
-        hears.then(next).flatten().unwrap_or(SimTime::NEVER)
+        self.hears(receiver).then(next).flatten().unwrap_or(SimTime::NEVER)
     }
 
     /// Moves out the robots that frames were sent to since the last call.

@@ -32,9 +32,33 @@ struct Sent {
 /// A lost copy, at its sender: what one frame loses lies together in memory.
 #[derive(Debug)]
 struct Lost {
-    receiver: u32,
     sequence: u32,
-    cause: LossCause,
+    /// The receiver, and the number of the cause in the bits above it: a swarm has a million robots at most.
+    receiver_and_cause: u32,
+}
+
+impl Lost {
+    const RECEIVER_BITS: u32 = 24;
+
+    fn new(receiver: ActorId, sequence: u32, cause: LossCause) -> Self {
+        debug_assert!(
+            receiver.0 >> Self::RECEIVER_BITS == 0,
+            "robot {receiver} has no number of 24 bits"
+        );
+        Self {
+            sequence,
+            receiver_and_cause: receiver.0 | (cause as u32) << Self::RECEIVER_BITS,
+        }
+    }
+
+    fn receiver(&self) -> ActorId {
+        ActorId(self.receiver_and_cause & ((1 << Self::RECEIVER_BITS) - 1))
+    }
+
+    /// The place of its cause among all.
+    fn cause(&self) -> usize {
+        (self.receiver_and_cause >> Self::RECEIVER_BITS) as usize
+    }
 }
 
 impl StatusLog {
@@ -62,11 +86,8 @@ impl StatusLog {
     /// The copy of a status that was meant for `receiver` is lost.
     #[inline]
     pub fn lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {
-        self.senders[sender.index()].lost.push(Lost {
-            receiver: receiver.0,
-            sequence,
-            cause,
-        });
+        let lost = &mut self.senders[sender.index()].lost;
+        lost.push(Lost::new(receiver, sequence, cause));
     }
 
     /// What became at `observer`, until `now`, of the statuses that `subject` sent after its frame number `sequence` and
@@ -91,8 +112,8 @@ impl StatusLog {
         let Some((first, last)) = ends else { return missed };
         let counts = |status: u32| !is_newer(first, status) && !is_newer(status, last);
         for copy in &subject_log.lost {
-            if copy.receiver == observer.0 && counts(copy.sequence) {
-                missed.lost[copy.cause as usize] += 1;
+            if copy.receiver() == observer && counts(copy.sequence) {
+                missed.lost[copy.cause()] += 1;
             }
         }
         let under_way = waiting.iter().map(|reception| &reception.frame);
