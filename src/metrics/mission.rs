@@ -181,16 +181,16 @@ impl Judge {
 /// Asks for something to hold without a break for some time.
 #[derive(Clone, Debug)]
 pub(super) struct Hold {
-    hold: Span,
+    duration: Span,
     control_period: Span,
     progress: Progress,
 }
 
 impl Hold {
-    /// Something is to be held for `hold`, judged every `control_period`.
-    pub(super) fn new(hold: Span, control_period: Span) -> Self {
+    /// Something is to be held for `duration`, judged every `control_period`.
+    pub(super) fn new(duration: Span, control_period: Span) -> Self {
         Self {
-            hold,
+            duration,
             control_period,
             progress: Progress::Underway,
         }
@@ -208,7 +208,7 @@ impl Hold {
     }
 
     fn held_since(&self, since: u64, step: u64) -> Progress {
-        if self.control_period * (step - since) >= self.hold {
+        if self.control_period * (step - since) >= self.duration {
             Progress::Complete { since }
         } else {
             Progress::Holding { since }

@@ -22,8 +22,8 @@ struct Count {
     payload_bytes: u64,
 }
 
-/// What went one way, cell by cell. Riders stand apart: without piggybacking there are none, and nothing is touched for them.
-#[derive(Debug)]
+/// What went one way, cell by cell. Riders stand apart: without piggybacking there are none, and they take no room.
+#[derive(Debug, Default)]
 struct Ledger {
     counts: Vec<Count>,
     riders: Vec<u64>,
@@ -33,7 +33,7 @@ impl Ledger {
     fn new(cells: usize) -> Self {
         Self {
             counts: vec![Count::default(); cells],
-            riders: vec![0; cells],
+            riders: Vec::new(),
         }
     }
 
@@ -43,17 +43,18 @@ impl Ledger {
         count.frames += 1;
         count.payload_bytes += u64::from(size.payload_bytes);
         if size.rides {
+            self.riders.resize(self.counts.len(), 0);
             self.riders[cell] += 1;
         }
     }
 
-    fn saw(&self, cell: usize) -> bool {
-        self.counts[cell].frames > 0
+    fn count(&self, cell: usize) -> Count {
+        self.counts.get(cell).copied().unwrap_or_default()
     }
 
     fn volume(&self, cell: usize, headers: HeaderBytes) -> Volume {
-        let Count { frames, payload_bytes } = self.counts[cell];
-        let begun = frames - self.riders[cell];
+        let Count { frames, payload_bytes } = self.count(cell);
+        let begun = frames - self.riders.get(cell).copied().unwrap_or_default();
         Volume {
             frames,
             payload_bytes,
@@ -71,6 +72,7 @@ pub(super) struct Traffic {
     headers: HeaderBytes,
     sent: Ledger,
     received: Ledger,
+    /// Takes no room before the first.
     duplicate: Ledger,
     /// A table for each cause, in the order of their numbers.
     lost: [Ledger; LossCause::ALL.len()],
@@ -88,7 +90,7 @@ impl Traffic {
             headers,
             sent: Ledger::new(cells),
             received: Ledger::new(cells),
-            duplicate: Ledger::new(cells),
+            duplicate: Ledger::default(),
             lost: LossCause::ALL.map(|_| Ledger::new(cells)),
             starts: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
         }
@@ -123,6 +125,7 @@ impl Traffic {
     /// What was received told its receiver nothing new.
     pub(super) fn duplicate(&mut self, robot: ActorId, topic: Topic, size: MessageSize) {
         let cell = self.cell(robot, topic);
+        self.duplicate.counts.resize(self.sent.counts.len(), Count::default());
         self.duplicate.add(cell, size);
     }
 
@@ -153,7 +156,9 @@ impl Traffic {
 
     fn saw_traffic(&self, cell: usize) -> bool {
         let ways = [&self.sent, &self.received, &self.duplicate];
-        ways.into_iter().chain(&self.lost).any(|ledger| ledger.saw(cell))
+        ways.into_iter()
+            .chain(&self.lost)
+            .any(|ledger| ledger.count(cell).frames > 0)
     }
 
     fn row(&self, cell: usize) -> TrafficRow {

@@ -2,25 +2,18 @@
 //! The times between one and the next are exponential, so T is a sum of independent exponentials with the means
 //! (N − 1) / (β (1 − p) n (N − n)), n = 1 to N − 1: its mean is their sum, its variance the sum of their squares.
 
-use desim::metrics::{Outcome, TrialRecord};
-use desim::scenario::{Scenario, parse};
-use desim::simulation::{DriverKind, run_trial};
+use desim::metrics::{Outcome, TopicFates, TrialRecord};
+use desim::scenario::Scenario;
+
+use super::run;
 
 const ROBOTS: u32 = 20;
 
 fn scenario(more: &str) -> Scenario {
-    let text = format!(
+    super::scenario(&format!(
         "Scenario(name: \"si\", time_limit: 200.0, swarm: (robots: {ROBOTS}, deploy: Cluster(radius: 0.9)),
          radio: (loss: Bernoulli(0.5), latency: Constant(0.0)), metrics: (hold: 0.0, sample_interval: 0.0), {more})"
-    );
-    parse("si.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
-}
-
-fn run(scenario: &Scenario, trials: u32) -> Vec<TrialRecord> {
-    let trial = |trial| run_trial(scenario, trial, DriverKind::Inline, &Default::default());
-    (0..trials)
-        .map(|number| trial(number).expect("a trial runs to its end"))
-        .collect()
+    ))
 }
 
 fn time_to_all(record: &TrialRecord) -> f64 {
@@ -113,6 +106,6 @@ fn what_robots_hear_twice_is_counted_and_a_finished_rumour_ends_the_trial() {
         let duplicate: u64 = record.traffic.iter().map(|row| row.duplicate.frames).sum();
         let read: u64 = received - record.ledger[0].in_flight;
         assert!(duplicate + u64::from(ROBOTS) - 1 <= read, "{duplicate} of {received}");
-        assert!(duplicate > 0 && record.ledger.iter().all(|fates| fates.is_balanced()));
+        assert!(duplicate > 0 && record.ledger.iter().all(TopicFates::is_balanced));
     }
 }
