@@ -111,7 +111,7 @@ class Folder:
         self.faults = self.table("faults")
         self.healing = self.table("healing")
         self.detection = self.table("detection")
-        self.spread = self.table("spread")
+        self.rumors = self.table("spread")
         self.topics = self.frames["topic"].unique(maintain_order=True).to_list()
         prefix = "robots_"
         self.roles = [c.removeprefix(prefix) for c in self.connectivity.columns if c.startswith(prefix)]
@@ -235,12 +235,12 @@ class Folder:
 
     def spreading(self):
         """How rumours spread over the robots that nothing ails at the end, if there were any."""
-        if self.spread.is_empty():
+        if self.rumors.is_empty():
             return {}
         trials = []
         for trial, end in self.trials.select("trial", "simulated_s").iter_rows():
             ailing = self.faults.filter(pl.col("trial") == trial, pl.col("until_s").is_null())["robot"].drop_nulls()
-            pairs = self.spread.filter(pl.col("trial") == trial, ~pl.col("robot").is_in(ailing.to_list()))
+            pairs = self.rumors.filter(pl.col("trial") == trial, ~pl.col("robot").is_in(ailing.to_list()))
             trials.append((len(pairs), sorted(pairs["informed_s"].drop_nulls()), end))
 
         def until(wanted):

@@ -121,8 +121,8 @@ fn of_topics(scenario: &Scenario) -> Vec<Problem> {
         if jitter > 0.0 && !timing.is_jittered() {
             let path = format!("gossip.{topic}.jitter");
             let message = format!(
-                "`{path}` of {jitter} moves nothing: of an interval of {} control periods it is less than 2",
-                timing.every()
+                "`{path}` of {jitter} moves nothing: of an interval of {} s it is less than 2 control periods",
+                (period * timing.every()).as_secs()
             );
             let help = format!("make `{path}` or `{interval}` greater");
             found.push(Problem::new(&path, message, help).with(&[&interval, "control.period"]));

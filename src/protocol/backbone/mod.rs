@@ -177,12 +177,17 @@ impl Backbone {
     /// A robot that names this one as its child and is not counted on as a parent is let go.
     fn hear_parent_strand(&mut self, sender: ActorId, strand: &Strand, out: &mut Vec<Message>) {
         let (me, step) = (self.known.id, self.known.step);
-        let nowhere = Strand {
-            robots: Rc::default(),
-            ..*strand
+        let nowhere;
+        let strand = if self.is_too_long(strand) {
+            // It is no way to the root.
+            nowhere = Strand {
+                robots: Rc::default(),
+                ..*strand
+            };
+            &nowhere
+        } else {
+            strand
         };
-        // One that has come too far is no way to the root.
-        let strand = if self.is_too_long(strand) { &nowhere } else { strand };
         let known = match &mut self.duty {
             Duty::Networker(networker) => networker.slot.hear_parent_strand(sender, strand, me, step),
             Duty::Worker(worker) => {
