@@ -27,13 +27,14 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
         &GossipConfig::default(),
         &detector,
         period,
+        workload.poses.len(),
         Streams::new(SEED, 0),
     ));
     let robots = workload
         .poses
         .iter()
         .zip(0..)
-        .map(|(_, id)| Heartbeat::new(ActorId(id), Rc::clone(&settings)))
+        .map(|(_, id)| <Heartbeat>::new(ActorId(id), Rc::clone(&settings)))
         .collect();
     let record = setup
         .run(workload.poses.clone(), robots, driver, &CancellationToken::new())

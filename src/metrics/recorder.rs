@@ -15,6 +15,7 @@ use super::latency::LatencyHistogram;
 use super::mission::{Hold, Judge, Mission, Progress, Scene};
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
 use super::reports::Reports;
+use super::series::Series;
 use super::spread::Spread;
 use super::traffic::{HeaderBytes, Traffic};
 
@@ -83,6 +84,7 @@ pub struct Recorder {
     /// How far the rumours have come, if there are any.
     everyone_knows: Option<Hold>,
     connectivity: Vec<ConnectivitySample>,
+    series: Series,
     trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
     /// The last sample's graph and its λ₂, which stands as long as no edge changes.
     last_graph: Option<(Graph, f64)>,
@@ -110,6 +112,7 @@ impl Recorder {
             spread: Spread::new(layout.rumors, layout.robots),
             everyone_knows: (layout.rumors > 0).then_some(hold),
             connectivity: Vec::new(),
+            series: Series::new(config.series_every),
             trajectories: Vec::new(),
             last_graph: None,
         }
@@ -216,7 +219,7 @@ impl Recorder {
         self.trace.is_some()
     }
 
-    /// Samples the graph of the live robots and where everyone is, `positions` in order of ids.
+    /// Samples the graph of the live robots, the traffic since the sample before, and where everyone is, `positions` in order of ids.
     pub fn sample(&mut self, now: SimTime, positions: &[Vec2]) {
         let live: Vec<Vec2> = (0..)
             .zip(positions)
@@ -237,6 +240,7 @@ impl Recorder {
                 .as_ref()
                 .map_or_else(Vec::new, |judge| judge.mission.links(scene)),
         });
+        self.series.sample(now, &self.traffic);
         self.trajectories
             .push((now, positions.iter().map(|p| [p.x as f32, p.y as f32]).collect()));
     }
@@ -308,6 +312,7 @@ impl Recorder {
             healing: self.healing.into_episodes(),
             spread: self.spread.into_records(),
             connectivity: self.connectivity,
+            series: self.series.into_entries(),
             robots: robots(self.reports, end.poses),
             trajectories: self.trajectories,
         }

@@ -2,10 +2,12 @@
 
 mod explanation;
 mod failures;
+mod html;
 mod layout;
 mod number;
 mod spread;
 mod terminal;
 
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
+pub use html::{PAGE_MARK, PageInput, page};
 pub use terminal::{Input, Speed, terminal};

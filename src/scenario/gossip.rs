@@ -67,7 +67,11 @@ fn unheeded(scenario: &Scenario) -> Vec<Problem> {
                 ("gossip.strand", strand_set, "it has no strands"),
                 ("gossip.request", request_set, "it has no requests"),
                 ("gossip.relay", relay_set, "it passes nothing on"),
-                ("gossip.piggyback", *piggyback, "it sends one message at a time"),
+                (
+                    "gossip.piggyback",
+                    *piggyback && !scenario.detector.sends(),
+                    "it sends one message at a time",
+                ),
             ],
         ),
         ProtocolConfig::Rumor(_) => (

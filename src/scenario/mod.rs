@@ -7,6 +7,7 @@
 //! own, `explain` and `shape` say what would be right, `report` shows it.
 
 mod checks;
+mod detector;
 mod explain;
 mod file;
 #[cfg(test)]
@@ -31,12 +32,13 @@ pub use report::{Diagnostic, Place, Report, Style};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::engine::Span;
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
 use crate::protocol::backbone::BackboneConfig;
 use crate::protocol::control::ControlConfig;
-use crate::protocol::detector::DetectorConfig;
+use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
 use crate::protocol::rumor::RumorConfig;
 use crate::protocol::wander::WanderConfig;
@@ -90,6 +92,18 @@ pub struct Scenario {
     /// What is measured.
     #[serde(default)]
     pub metrics: MetricsConfig,
+}
+
+impl Scenario {
+    /// What its failure detector is told of the swarm.
+    #[must_use]
+    pub fn circumstances(&self) -> Circumstances {
+        let period = Span::from_secs(self.control.period.get());
+        Circumstances {
+            robots: self.swarm.robots as usize,
+            status_interval: self.gossip.status.longest_pause(period),
+        }
+    }
 }
 
 fn one_trial() -> u32 {

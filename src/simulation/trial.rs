@@ -1,5 +1,6 @@
 //! From a scenario to the record of one of its trials.
 
+use std::convert::Infallible;
 use std::rc::Rc;
 
 use tokio_util::sync::CancellationToken;
@@ -11,6 +12,7 @@ use crate::geometry::Vec2;
 use crate::metrics::{Mission, MissionTarget, TrialRecord};
 use crate::motion::{DeployError, deploy};
 use crate::protocol::backbone::{self, BackboneConfig};
+use crate::protocol::detector::Probe;
 use crate::protocol::heartbeat::{Heartbeat, Settings};
 use crate::protocol::rumor;
 use crate::protocol::wander::Ground;
@@ -83,11 +85,15 @@ fn run(
             setup.run(poses, robots, driver, stop)
         }
         ProtocolConfig::Heartbeat => {
-            let settings = Settings::new(&scenario.gossip, &scenario.detector, period, streams);
+            let settings = Settings::new(&scenario.gossip, &scenario.detector, period, poses.len(), streams);
             let settings = Rc::new(settings.wandering(ground(scenario, streams)));
-            let ids = (0..swarm.robots).map(ActorId);
-            let robots = ids.map(|id| Heartbeat::new(id, Rc::clone(&settings))).collect();
-            setup.run(poses, robots, driver, stop)
+            if scenario.detector.sends() {
+                let robots = heartbeats::<Rc<Probe>>(swarm.robots, &settings);
+                setup.run(poses, robots, driver, stop)
+            } else {
+                let robots = heartbeats::<Infallible>(swarm.robots, &settings);
+                setup.run(poses, robots, driver, stop)
+            }
         }
         ProtocolConfig::Rumor(config) => {
             let ground = ground(scenario, streams);
@@ -107,6 +113,12 @@ fn ground(scenario: &Scenario, streams: Streams) -> Ground {
     Ground::new(scenario.wander, Vec2::new(half[0], half[1]), streams)
 }
 
+/// Robots whose messages carry what their detectors say by `P`.
+fn heartbeats<P>(robots: u32, settings: &Rc<Settings>) -> Vec<Heartbeat<P>> {
+    let ids = (0..robots).map(ActorId);
+    ids.map(|id| Heartbeat::new(id, Rc::clone(settings))).collect()
+}
+
 fn setup(scenario: &Scenario, trial: u32) -> Setup {
     Setup {
         seed: scenario.seed,
@@ -120,6 +132,7 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         faults: scenario.faults.clone(),
         metrics: scenario.metrics.clone(),
         detector: scenario.detector.clone(),
+        status_interval: scenario.circumstances().status_interval,
         trace: None,
         mission: None,
         rumors: 0,

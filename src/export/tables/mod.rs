@@ -8,6 +8,7 @@ mod frames;
 mod healing;
 mod latency;
 mod robots;
+mod series;
 mod spread;
 mod trajectories;
 mod trials;
@@ -33,11 +34,12 @@ pub struct Tables {
     faults: Table<faults::Row>,
     healing: Table<healing::Row>,
     spread: Table<spread::Row>,
+    series: Table<series::Row>,
 }
 
 impl Tables {
     /// Names of the files.
-    pub const FILES: [&str; 11] = [
+    pub const FILES: [&str; 12] = [
         "trials.parquet",
         "frames.parquet",
         "bandwidth.parquet",
@@ -48,6 +50,7 @@ impl Tables {
         "faults.parquet",
         "healing.parquet",
         "detection.parquet",
+        "series.parquet",
         "spread.parquet",
     ];
 
@@ -69,7 +72,8 @@ impl Tables {
             faults: Table::create(&path(7), faults::columns())?,
             healing: Table::create(&path(8), healing::columns(&names))?,
             detection: Table::create(&path(9), detection::columns())?,
-            spread: Table::create(&path(10), spread::columns())?,
+            spread: Table::create(&path(11), spread::columns())?,
+            series: Table::create(&path(10), series::columns())?,
         })
     }
 
@@ -88,7 +92,8 @@ impl Tables {
         self.trajectories.extend(trajectories::rows(record))?;
         self.faults.extend(faults::rows(record, &self.names))?;
         self.healing.extend(healing::rows(record, &self.names))?;
-        self.spread.extend(spread::rows(record))
+        self.spread.extend(spread::rows(record))?;
+        self.series.extend(series::rows(record, &self.names))
     }
 
     /// Ends every file.
@@ -106,6 +111,7 @@ impl Tables {
         self.trajectories.finish()?;
         self.faults.finish()?;
         self.healing.finish()?;
-        self.spread.finish()
+        self.spread.finish()?;
+        self.series.finish()
     }
 }

@@ -8,7 +8,7 @@ mod survival;
 
 pub use location::{mean, median, proportion, ratio};
 pub use spread::{gini, quantile};
-pub use survival::{Observation, median_survival};
+pub use survival::{Observation, Step, median_survival, survival_curve};
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};

@@ -30,16 +30,21 @@ pub fn median_survival(observations: &[Observation]) -> Estimate {
     }
 }
 
-/// The survival curve from `time` on.
-struct Step {
-    time: f64,
-    survival: f64,
-    band: [f64; 2],
+/// The survival curve from one time on until the next step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The time.
+    pub time: f64,
+    /// Estimated share of trials that are not done by then.
+    pub survival: f64,
+    /// Greenwood's 95 % band under the log(−log) transform.
+    pub band: [f64; 2],
 }
 
 /// The Kaplan–Meier curve, a step for each time at which something happened. At a tie, what happened came before what
 /// was cut off.
-fn survival_curve(observations: &[Observation]) -> Vec<Step> {
+#[must_use]
+pub fn survival_curve(observations: &[Observation]) -> Vec<Step> {
     let mut sorted = observations.to_vec();
     sorted.sort_by(|a, b| a.time.total_cmp(&b.time));
     let mut at_risk = sorted.len() as f64;

@@ -2,7 +2,7 @@
 
 use crate::engine::{ActorId, Span, Streams};
 use crate::geometry::{Pose, Vec2, direction};
-use crate::protocol::detector::DetectorConfig;
+use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::{GossipConfig, Repetition, RetransmitConfig, TimeToLiveConfig, Turns};
 
 use super::config::BackboneConfig;
@@ -109,6 +109,7 @@ pub struct Parameters {
     pub healing_patience: u64,
     pub silence_steps: u64,
     pub detector: DetectorConfig,
+    pub circumstances: Circumstances,
 }
 
 impl Mission {
@@ -208,7 +209,7 @@ impl Parameters {
     pub fn new(
         config: &BackboneConfig,
         gossip: &GossipConfig,
-        detector: &DetectorConfig,
+        (detector, circumstances): (&DetectorConfig, Circumstances),
         control_period: Span,
         streams: Streams,
     ) -> Self {
@@ -255,8 +256,9 @@ impl Parameters {
             },
             hop_limit: gossip.strand.hop_limit.into(),
             healing_patience: steps(config.healing.patience.get()),
-            silence_steps: steps(detector.longest_silence().as_secs()),
+            silence_steps: steps(detector.usual_silence(circumstances).as_secs()),
             detector: detector.clone(),
+            circumstances,
         }
     }
 }
@@ -282,7 +284,13 @@ mod tests {
         let parameters = Parameters::new(
             &config,
             &GossipConfig::default(),
-            &DetectorConfig::default(),
+            (
+                &DetectorConfig::default(),
+                Circumstances {
+                    robots: poses.len(),
+                    status_interval: Span::from_secs(0.1),
+                },
+            ),
             Span::from_secs(0.1),
             Streams::new(1, 0),
         );

@@ -199,6 +199,12 @@ impl TopicConfig {
     pub fn repetition(&self, control_period: Span) -> Repetition {
         Repetition::new(self.send, self.timing(control_period), control_period)
     }
+
+    /// The longest pause from one broadcast to the next, whatever there is to say.
+    #[must_use]
+    pub fn longest_pause(&self, control_period: Span) -> Span {
+        control_period * self.repetition(control_period).longest_pause()
+    }
 }
 
 impl StrandConfig {
