@@ -129,6 +129,7 @@ class Folder:
         self.faults = self.table("faults")
         self.healing = self.table("healing")
         self.detection = self.table("detection")
+        self.rumors = self.table("spread")
         self.topics = self.frames["topic"].unique(maintain_order=True).to_list()
         prefix = "robots_"
         self.roles = [c.removeprefix(prefix) for c in self.connectivity.columns if c.startswith(prefix)]
@@ -250,6 +251,43 @@ class Folder:
         whole = {**self.healed(harmful), "harmless": len(harmless), "by_role": by_role, "by_overlap": by_overlap}
         return {"healing": whole}
 
+    def spreading(self):
+        """How rumours spread over the robots that nothing ails at the end, if there were any."""
+        if self.rumors.is_empty():
+            return {}
+        trials = []
+        for trial, end in self.trials.select("trial", "simulated_s").iter_rows():
+            ailing = self.faults.filter(pl.col("trial") == trial, pl.col("until_s").is_null())["robot"].drop_nulls()
+            pairs = self.rumors.filter(pl.col("trial") == trial, ~pl.col("robot").is_in(ailing.to_list()))
+            trials.append((len(pairs), sorted(pairs["informed_s"].drop_nulls()), end))
+
+        def until(wanted):
+            times = [(known[n - 1], True) if n <= len(known) else (end, False) for n, known, end in wanted]
+            complete = all(done for _, done in times)
+            return {"median": kaplan_meier(times), "mean": mean([t for t, _ in times] if complete else [])}
+
+        spread = {
+            "informed_ratio": mean([len(known) / count for count, known, _ in trials]),
+            "time_to_half": until([((count + 1) // 2, known, end) for count, known, end in trials]),
+            "time_to_all": until(trials),
+        }
+        return {"spread": spread}
+
+    def heard_in_vain(self):
+        """Messages that told their receiver nothing new, in those delivered, if there were any."""
+        counted = self.bandwidth.filter(pl.col("direction").is_in(["rx", "duplicate"]))
+        if counted.filter(direction="duplicate").is_empty():
+            return {}
+
+        def share(rows):
+            grouped = rows.group_by("trial", "direction").agg(pl.sum("frames"))
+            sums = {(trial, direction): frames for trial, direction, frames in grouped.iter_rows()}
+            received = [(trial, sums.get((trial, "rx"), 0)) for trial in self.trials["trial"]]
+            return mean([sums.get((trial, "duplicate"), 0) / rx for trial, rx in received if rx > 0])
+
+        by_topic = {topic: share(counted.filter(topic=topic)) for topic in self.topics}
+        return {"duplicates": {**share(counted), "by_topic": by_topic}}
+
     def failure_detection(self):
         suspicions = self.detection.filter(event="suspicion")
         failures = self.detection.filter(event="failure")
@@ -321,6 +359,8 @@ class Folder:
             "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]]),
             **self.failures(),
             **self.mending(),
+            **self.spreading(),
+            **self.heard_in_vain(),
             "detection": self.failure_detection(),
             "steps": {"value": self.trials["steps"].sum()},
             "simulated_s": {"value": total(self.trials["simulated_s"])},

@@ -11,6 +11,7 @@ mod record;
 mod recorder;
 mod reports;
 mod series;
+mod spread;
 pub mod statistics;
 pub mod summary;
 mod traffic;
@@ -24,5 +25,7 @@ pub use record::{
     TopicFates, TrafficRow, TrialRecord, Volume,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
+pub use spread::RumorSpread;
 pub use statistics::Estimate;
 pub use summary::Summary;
+pub use traffic::HeaderBytes;

@@ -21,6 +21,12 @@ pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
 
 fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static str> {
     let radio = &scene.scenario.radio;
+    if let Some(why) = scene.unsteady() {
+        return Err(why);
+    }
+    if scene.status_timing().is_jittered() {
+        return Err("statuses are moved at random within their interval, which the formulas leave out");
+    }
     let detector = detector(scene)?;
     if detector.is_undecided() {
         return Err("the timeout is a multiple of the status interval and latency is 0: the order of events decides");

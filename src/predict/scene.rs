@@ -2,6 +2,8 @@
 
 use crate::engine::Span;
 use crate::motion::Spacing;
+use crate::protocol::gossip::{SendConfig, Timing};
+use crate::protocol::wander::WanderConfig;
 use crate::radio::LossConfig;
 use crate::scenario::{ProtocolConfig, Scenario};
 
@@ -34,14 +36,25 @@ impl<'a> Scene<'a> {
     pub fn stands_still(&self) -> bool {
         match self.scenario.protocol {
             ProtocolConfig::Backbone(_) => false,
-            ProtocolConfig::Heartbeat => true,
+            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => self.scenario.wander == WanderConfig::Still,
+        }
+    }
+
+    /// Why no steady stream of statuses can be counted on, if none can.
+    pub fn unsteady(&self) -> Option<&'static str> {
+        match (&self.scenario.protocol, self.scenario.gossip.status.send) {
+            (ProtocolConfig::Rumor(_), _) => Some("the protocol sends no statuses"),
+            (_, SendConfig::OnChange { .. }) => {
+                Some("statuses are sent when what they say changes: how often that is depends on the mission")
+            }
+            (_, SendConfig::Always) => None,
         }
     }
 
     /// Whether robots send nothing but statuses.
     pub fn sends_statuses_alone(&self) -> bool {
         match self.scenario.protocol {
-            ProtocolConfig::Backbone(_) => false,
+            ProtocolConfig::Backbone(_) | ProtocolConfig::Rumor(_) => false,
             ProtocolConfig::Heartbeat => !self.scenario.detector.sends(),
         }
     }
@@ -51,10 +64,14 @@ impl<'a> Scene<'a> {
         self.scenario.control.period.get()
     }
 
-    /// Control steps from one status of a robot to the next.
+    /// The rhythm of statuses.
+    pub fn status_timing(&self) -> Timing {
+        self.scenario.gossip.status.timing(Span::from_secs(self.period_s()))
+    }
+
+    /// Control steps from one status of a robot to the next, on average.
     pub fn steps_a_status(&self) -> f64 {
-        let period = Span::from_secs(self.period_s());
-        self.scenario.gossip.status.steps(period) as f64
+        self.status_timing().every() as f64
     }
 
     /// η, seconds from one status of a robot to the next.
@@ -62,9 +79,20 @@ impl<'a> Scene<'a> {
         self.steps_a_status() * self.period_s()
     }
 
-    /// Bytes of a status, header included.
+    /// Bytes of a status, headers included.
     pub fn status_bytes(&self) -> f64 {
-        STATUS_BYTES + f64::from(self.scenario.radio.header_bytes)
+        let radio = &self.scenario.radio;
+        STATUS_BYTES + f64::from(radio.frame_header_bytes) + f64::from(radio.message_header_bytes)
+    }
+
+    /// Those of them that are another message's where a status is not the first in its frame.
+    pub fn shared_bytes(&self) -> f64 {
+        let shared = self.scenario.gossip.piggyback && !self.sends_statuses_alone();
+        if shared {
+            f64::from(self.scenario.radio.frame_header_bytes)
+        } else {
+            0.0
+        }
     }
 
     /// The means of figures of the distance over the neighbours at the start; the figures themselves where they do not depend on

@@ -13,8 +13,17 @@ const LOAD: &str = "channel load";
 pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
     loss(scene, preflight);
     latency(scene, preflight);
-    sent(scene, preflight);
-    received(scene, preflight);
+    match scene.unsteady() {
+        None => {
+            sent(scene, preflight);
+            received(scene, preflight);
+        }
+        Some(why) => preflight.refuse("status_tx_bytes_per_step", "status bytes", why),
+    }
+    if matches!(scene.scenario.protocol, ProtocolConfig::Rumor(_)) {
+        let why = "who passes on what depends on who knows it already";
+        preflight.refuse("rumor", "rumour bytes", why);
+    }
     if matches!(scene.scenario.protocol, ProtocolConfig::Backbone(_)) {
         let why = "how often robots ask, refuse and ask again depends on how chains grow";
         preflight.refuse("request", "request bytes", why);
@@ -84,13 +93,13 @@ fn sent(scene: &Scene<'_>, preflight: &mut Preflight) {
     let bytes = scene.status_bytes();
     // A trial has one status more than whole intervals, or less.
     let end = scene.interval_s() / scene.duration_s;
-    let mut push = |name, what, value: f64, unit, formula, assumes: &str| {
+    let mut push = |name, what, value: f64, shared, unit, formula, assumes: &str| {
         preflight.predictions.push(Prediction {
             name,
             what,
             value,
             unit,
-            accuracy: value * end,
+            accuracy: value * end + shared,
             holds: Holds::Throughout,
             formula,
             assumes: assumes.into(),
@@ -100,6 +109,7 @@ fn sent(scene: &Scene<'_>, preflight: &mut Preflight) {
         "status_frames_per_step",
         "statuses sent",
         1.0 / steps,
+        0.0,
         "frames/step",
         "1 / control steps an interval",
         "of a robot, none of which fails",
@@ -108,6 +118,7 @@ fn sent(scene: &Scene<'_>, preflight: &mut Preflight) {
         "status_tx_bytes_per_step",
         "status bytes sent",
         bytes / steps,
+        scene.shared_bytes() / steps,
         "B/step",
         "(4 + header) / control steps an interval",
         "of a robot, none of which fails",
@@ -130,17 +141,19 @@ fn received(scene: &Scene<'_>, preflight: &mut Preflight) {
     let end = scene.interval_s() / scene.duration_s;
     let latency = scene.scenario.radio.latency.mean() / scene.duration_s;
     let sent = scene.status_bytes() / scene.steps_a_status();
+    let shared = scene.shared_bytes() / scene.steps_a_status();
     preflight.predictions.push(Prediction {
         name: "status_rx_bytes_per_step",
         what: RECEIVED,
         value: degree * (1.0 - lost) * sent,
         unit: "B/step",
-        accuracy: (1.0 - lost) * sent * (accuracy + degree * (end + latency)),
+        accuracy: (1.0 - lost) * (sent * (accuracy + degree * (end + latency)) + degree * shared),
         holds,
         formula: "neighbours · (1 − loss) · status bytes sent",
         assumes: "of a robot, none of which fails".into(),
     });
     let a_second = sent / scene.period_s();
+    let shared_a_second = shared / scene.period_s();
     let others = if scene.sends_statuses_alone() {
         "all that is sent in range of a robot, heard or lost"
     } else {
@@ -151,7 +164,7 @@ fn received(scene: &Scene<'_>, preflight: &mut Preflight) {
         what: LOAD,
         value: degree * a_second,
         unit: "B/s",
-        accuracy: a_second * (accuracy + degree * end),
+        accuracy: a_second * (accuracy + degree * end) + degree * shared_a_second,
         holds,
         formula: "neighbours · status bytes a second",
         assumes: others.into(),

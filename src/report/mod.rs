@@ -6,6 +6,7 @@ mod html;
 mod layout;
 mod number;
 mod preflight;
+mod spread;
 mod surprises;
 mod terminal;
 

@@ -7,6 +7,7 @@ use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle
 use super::failures;
 use super::layout::{Page, WIDTH};
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
+use super::spread;
 use super::surprises;
 use crate::metrics::Summary;
 use crate::metrics::summary::{Detection, Directions, Quantity, Spread, TopicBandwidth};
@@ -54,6 +55,7 @@ pub fn terminal(input: &Input) -> String {
     page.title(&input.summary.scenario, input.question);
     outcome(&mut page, input);
     failures::section(&mut page, input.summary);
+    spread::section(&mut page, input.summary);
     bandwidth(&mut page, input.summary);
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
@@ -242,6 +244,13 @@ fn radio(page: &mut Page, summary: &Summary) {
         count(fates.in_flight)
     );
     page.entry("offered", &balance);
+    if let Some(duplicates) = &summary.duplicates {
+        let share = estimate(&duplicates.total, percent);
+        page.entry(
+            "duplicates",
+            &format!("{share} of what was delivered told its receiver nothing new"),
+        );
+    }
 }
 
 fn connectivity(page: &mut Page, summary: &Summary) {

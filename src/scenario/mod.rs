@@ -12,6 +12,7 @@ mod explain;
 mod file;
 #[cfg(test)]
 mod generated;
+mod gossip;
 mod limits;
 mod lines;
 mod overrides;
@@ -39,6 +40,8 @@ use crate::protocol::backbone::BackboneConfig;
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
+use crate::protocol::rumor::RumorConfig;
+use crate::protocol::wander::WanderConfig;
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
 
@@ -71,7 +74,10 @@ pub struct Scenario {
     pub control: ControlConfig,
     /// What robots run.
     pub protocol: ProtocolConfig,
-    /// How often robots repeat what they gossip.
+    /// How robots move whose protocol has no motion of its own: not at all by default.
+    #[serde(default)]
+    pub wander: WanderConfig,
+    /// How robots repeat what they gossip.
     #[serde(default)]
     pub gossip: GossipConfig,
     /// When a robot believes that a neighbour is down.
@@ -95,7 +101,7 @@ impl Scenario {
         let period = Span::from_secs(self.control.period.get());
         Circumstances {
             robots: self.swarm.robots as usize,
-            status_interval: period * self.gossip.status.steps(period),
+            status_interval: self.gossip.status.longest_pause(period),
         }
     }
 }
@@ -125,6 +131,8 @@ pub struct SwarmConfig {
 pub enum ProtocolConfig {
     /// The paper's failure-tolerant connectivity backbone.
     Backbone(BackboneConfig),
-    /// Status broadcasts and timeouts alone, on robots that stand still.
+    /// Status broadcasts and timeouts alone.
     Heartbeat,
+    /// Rumours that spread, until all robots know all of them.
+    Rumor(RumorConfig),
 }

@@ -7,12 +7,14 @@ mod detection;
 mod faults;
 mod frames;
 mod quantity;
+mod spread;
 
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
 pub use detection::{Detection, Failures, Suspicions};
 pub use faults::{FaultSummary, Healed, HealingSummary, HealingTime};
 pub use frames::{Fates, Frames};
 pub use quantity::{Measured, Named, Quantity, Unit};
+pub use spread::{Duplicates, SpreadSummary, SpreadTime};
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
@@ -64,6 +66,12 @@ pub struct Summary {
     /// How targets got their links back; absent if no robot failed that worked for one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub healing: Option<HealingSummary>,
+    /// How rumours spread; absent where there were none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spread: Option<SpreadSummary>,
+    /// What was heard in vain; absent where the protocol names nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duplicates: Option<Duplicates>,
     /// Failure detection, against the truth.
     pub detection: Detection,
     /// Control steps simulated, over all trials.
@@ -141,6 +149,8 @@ impl Summary {
             },
             faults: FaultSummary::of(roles, records),
             healing: HealingSummary::of(topics, roles, records),
+            spread: SpreadSummary::of(records),
+            duplicates: Duplicates::of(topics, records),
             detection: Detection::of(records),
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),

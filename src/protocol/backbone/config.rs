@@ -254,6 +254,16 @@ impl BackboneConfig {
         1 + self.targets().into_iter().map(of_target).sum::<usize>()
     }
 
+    /// Robots of the longest chain that the targets need, the worker among them, seen from the centre.
+    #[must_use]
+    pub fn longest_chain(&self) -> usize {
+        let relays = |(place, links): (Vec2, u8)| {
+            let (threshold, safe) = (self.movement_threshold.get(), self.safe_distance.get());
+            relays_needed(place.norm(), threshold, safe).max(usize::from(links > 1))
+        };
+        self.targets().into_iter().map(relays).max().unwrap_or(0) + 1
+    }
+
     /// What is wrong with these settings together, for `robots` robots that hear each other up to `radio_range` metres:
     /// the field at fault and what would be right.
     #[must_use]
