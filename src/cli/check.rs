@@ -1,9 +1,11 @@
-//! `desim check`: says everything that is wrong with scenario files before they are run.
+//! `desim check`: says everything that is wrong with scenario and study files before they are run.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use crate::scenario::{Diagnostic, Override, Report, Scenario, Style, contents, parse, question, to_ron};
+use crate::scenario::{
+    Diagnostic, Override, Plan, Report, Scenario, Style, contents, is_study, load_study, parse, question, to_ron,
+};
 
 /// Checks each of `files` with `overrides` worked in, and writes to `out`, standard output: for every file its faults,
 /// or a line that it is well; where `resolved` is asked for, the whole scenario with its defaults instead of that line.
@@ -23,18 +25,23 @@ pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut 
     let mut accepted = Vec::new();
     for file in files {
         match read(file, &parsed) {
-            Ok((text, scenario)) => accepted.push((file, text, scenario)),
+            Ok(checked) => accepted.push((file, checked)),
             Err(report) => {
                 well = false;
                 write!(out, "{}", report.render(style(&io::stdout())))?;
             }
         }
     }
-    for (file, text, scenario) in accepted {
-        if resolved {
-            write_resolved(&text, &scenario, out)?;
-        } else {
-            write_line(file, &scenario, out)?;
+    for (file, checked) in accepted {
+        match checked {
+            Checked::Scenario(text, scenario) if resolved => write_resolved(question(&text), &scenario, out)?,
+            Checked::Scenario(_, scenario) => write_line(file, &scenario, out)?,
+            Checked::Study(plan) if resolved => {
+                for setting in &plan.settings {
+                    write_resolved(plan.question.clone(), &setting.scenario, out)?;
+                }
+            }
+            Checked::Study(plan) => write_study(file, &plan, out)?,
         }
     }
     Ok(well)
@@ -60,14 +67,37 @@ pub fn all(overrides: &[String]) -> Result<Vec<Override>, Report> {
     }
 }
 
-fn read(file: &Path, overrides: &[Override]) -> Result<(String, Scenario), Report> {
-    let text = contents(file)?;
-    let scenario = parse(&file.display().to_string(), &text, overrides)?;
-    Ok((text, scenario))
+/// A file that is well.
+enum Checked {
+    Scenario(String, Box<Scenario>),
+    Study(Plan),
 }
 
-fn write_resolved(text: &str, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
-    if let Some(question) = question(text) {
+fn read(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
+    let text = contents(file)?;
+    if is_study(&text) {
+        return match overrides.first() {
+            None => load_study(file).map(Checked::Study),
+            Some(given) => Err(Report::from(Diagnostic {
+                message: format!("{}{} is a study, whose fields are not set from outside", given.prefix(), file.display()),
+                help: Some("check it without --set".to_owned()),
+                path: None,
+                place: None,
+            })),
+        };
+    }
+    let scenario = parse(&file.display().to_string(), &text, overrides)?;
+    Ok(Checked::Scenario(text, Box::new(scenario)))
+}
+
+fn write_study(file: &Path, plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
+    let trials: u64 = plan.settings.iter().map(|setting| u64::from(setting.scenario.trials)).sum();
+    let (name, settings) = (&plan.name, plan.settings.len());
+    writeln!(out, "ok {}: {name}, a study of {settings} settings, {trials} trials", file.display())
+}
+
+fn write_resolved(question: Option<String>, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
+    if let Some(question) = question {
         writeln!(out, "// {question}")?;
     }
     write!(out, "{}", to_ron(scenario))

@@ -1,6 +1,7 @@
 //! The command line: the only place that prints and the only exit code.
 
 pub mod check;
+pub mod compare;
 pub mod explain;
 mod failure;
 mod interrupt;
@@ -8,6 +9,7 @@ pub mod log;
 mod progress;
 pub mod scenario;
 pub mod schema;
+mod settings;
 
 use std::io;
 use std::path::PathBuf;
@@ -15,6 +17,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use compare::CompareArguments;
 use explain::ExplainArguments;
 pub use failure::Failure;
 use scenario::ScenarioArguments;
@@ -52,17 +55,20 @@ pub enum Command {
     /// Run the trials of a scenario and report what they show
     #[command(long_about = scenario::LONG_ABOUT)]
     Scenario(ScenarioArguments),
-    /// Say everything that is wrong with scenario files, without running them
+    /// Compare the settings of a study, or several scenarios, under common random numbers
+    #[command(long_about = compare::LONG_ABOUT)]
+    Compare(CompareArguments),
+    /// Say everything that is wrong with scenario and study files, without running them
     ///
-    /// Each fault comes with its file, line and column, and with what would be right. Exit status 2 if there is any.
+    /// Of a study, every combination is checked. Each fault comes with its file, line and column, and with what would be right. Exit status 2 if there is any.
     Check {
-        /// Scenario files (RON)
+        /// Scenario files and study files (RON)
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
         /// Set a value of the scenarios, such as `radio.loss=Bernoulli(0.3)`; may be given many times
         #[arg(long = "set", value_name = "PATH=VALUE")]
         overrides: Vec<String>,
-        /// Print each scenario whole, with every default and override in it
+        /// Print each scenario whole, those of a study's settings too, with every default and override in it
         #[arg(long)]
         resolved: bool,
     },
@@ -81,6 +87,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
     let mut out = io::stdout();
     match command {
         Command::Scenario(arguments) => scenario::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Check {
             files,
             overrides,

@@ -85,7 +85,7 @@ impl Manifest {
 }
 
 /// Adds a line for each value that differs between `there` and `now`.
-fn compare(path: &str, there: &Value, now: &Value, lines: &mut Vec<String>) {
+pub fn compare(path: &str, there: &Value, now: &Value, lines: &mut Vec<String>) {
     match (there, now) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
             for ((key, there), now) in a.iter().zip(b.values()) {

@@ -1,10 +1,12 @@
 //! Finished results as text for people.
 
+mod comparison;
 mod explanation;
 mod failures;
 mod layout;
 mod number;
 mod terminal;
 
+pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use terminal::{Input, Speed, terminal};

@@ -27,7 +27,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    fn new(path: &str, message: impl Into<String>, help: impl Into<String>) -> Self {
+    pub fn new(path: &str, message: impl Into<String>, help: impl Into<String>) -> Self {
         Self {
             path: FieldPath::of(path),
             message: message.into(),

@@ -7,6 +7,7 @@
 //! own, `explain` and `shape` say what would be right, `report` shows it.
 
 mod checks;
+mod document;
 mod explain;
 mod file;
 #[cfg(test)]
@@ -19,6 +20,7 @@ mod read;
 mod report;
 mod shape;
 mod source;
+mod study;
 mod token;
 mod tree;
 
@@ -26,6 +28,10 @@ pub use file::{contents, json_schema, load, question, to_ron};
 pub use overrides::Override;
 pub use read::parse;
 pub use report::{Diagnostic, Place, Report, Style};
+pub use study::{
+    DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
+    study_schema,
+};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -33,10 +39,12 @@ use serde::{Deserialize, Serialize};
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
-use crate::protocol::backbone::BackboneConfig;
+use crate::protocol::Protocol as _;
+use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::DetectorConfig;
 use crate::protocol::gossip::GossipConfig;
+use crate::protocol::heartbeat::Heartbeat;
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
 
@@ -113,4 +121,15 @@ pub enum ProtocolConfig {
     Backbone(BackboneConfig),
     /// Status broadcasts and timeouts alone, on robots that stand still.
     Heartbeat,
+}
+
+impl ProtocolConfig {
+    /// What the protocol calls its topics.
+    #[must_use]
+    pub fn topics(&self) -> &'static [&'static str] {
+        match self {
+            Self::Backbone(_) => Backbone::TOPICS,
+            Self::Heartbeat => Heartbeat::TOPICS,
+        }
+    }
 }

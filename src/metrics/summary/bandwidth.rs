@@ -161,7 +161,7 @@ impl LoadImbalance {
 
 /// Each robot's bytes a control step in one trial, of whatever `bytes` takes from its rows; a robot without traffic
 /// counts with 0.
-fn per_step(record: &TrialRecord, bytes: impl Fn(&TrafficRow) -> u64) -> Vec<f64> {
+pub(in crate::metrics) fn per_step(record: &TrialRecord, bytes: impl Fn(&TrafficRow) -> u64) -> Vec<f64> {
     let mut sums = vec![0; record.robots.len()];
     for row in &record.traffic {
         sums[row.robot.index()] += bytes(row);
