@@ -79,7 +79,11 @@ fn read(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
         return match overrides.first() {
             None => load_study(file).map(Checked::Study),
             Some(given) => Err(Report::from(Diagnostic {
-                message: format!("{}{} is a study, whose fields are not set from outside", given.prefix(), file.display()),
+                message: format!(
+                    "{}{} is a study, whose fields are not set from outside",
+                    given.prefix(),
+                    file.display()
+                ),
                 help: Some("check it without --set".to_owned()),
                 path: None,
                 place: None,
@@ -91,9 +95,17 @@ fn read(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
 }
 
 fn write_study(file: &Path, plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
-    let trials: u64 = plan.settings.iter().map(|setting| u64::from(setting.scenario.trials)).sum();
+    let trials: u64 = plan
+        .settings
+        .iter()
+        .map(|setting| u64::from(setting.scenario.trials))
+        .sum();
     let (name, settings) = (&plan.name, plan.settings.len());
-    writeln!(out, "ok {}: {name}, a study of {settings} settings, {trials} trials", file.display())
+    writeln!(
+        out,
+        "ok {}: {name}, a study of {settings} settings, {trials} trials",
+        file.display()
+    )
 }
 
 fn write_resolved(question: Option<String>, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {

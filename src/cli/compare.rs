@@ -65,7 +65,10 @@ pub struct CompareArguments {
 }
 
 fn width(text: &str) -> Result<f64, String> {
-    let width = text.parse::<f64>().ok().filter(|width| width.is_finite() && *width > 0.0);
+    let width = text
+        .parse::<f64>()
+        .ok()
+        .filter(|width| width.is_finite() && *width > 0.0);
     width.ok_or_else(|| "expected a number above 0".to_owned())
 }
 
@@ -117,7 +120,9 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
 
 /// What the results depend on, beside the settings' scenarios.
 fn described(plan: &Plan, arguments: &CompareArguments) -> serde_json::Value {
-    let until_width = arguments.until_width.map(|width| json!({"width": width, "most_trials": arguments.most_trials}));
+    let until_width = arguments
+        .until_width
+        .map(|width| json!({"width": width, "most_trials": arguments.most_trials}));
     json!({
         "name": plan.name,
         "question": plan.question,
@@ -138,7 +143,9 @@ fn finished(
     asked: &StudyManifest,
     arguments: &CompareArguments,
 ) -> Result<Option<Comparison>, Failure> {
-    let Some(there) = folder.contents()? else { return Ok(None) };
+    let Some(there) = folder.contents()? else {
+        return Ok(None);
+    };
     if arguments.force {
         for name in &there.settings {
             // Opening the trials makes sure that nobody is running them.

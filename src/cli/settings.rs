@@ -45,8 +45,11 @@ struct Cell<'a> {
 impl<'a> Settings<'a> {
     /// Makes sure that each setting's folder holds nothing, or trials of that very setting. Writes nothing yet.
     pub fn open(study: &'a StudyFolder, plan: &'a Plan, arguments: &'a CompareArguments) -> Result<Self, Failure> {
-        let registries: Vec<Registry> =
-            plan.settings.iter().map(|setting| Registry::of(setting.scenario.protocol.topics())).collect();
+        let registries: Vec<Registry> = plan
+            .settings
+            .iter()
+            .map(|setting| Registry::of(setting.scenario.protocol.topics()))
+            .collect();
         let figures = common(&registries);
         let compared = study.comparison()?;
         let mut cells = Vec::new();
@@ -67,7 +70,9 @@ impl<'a> Settings<'a> {
                     )));
                 }
             }
-            let places = figures.iter().filter_map(|figure| registry.figures().position(|own| own == figure));
+            let places = figures
+                .iter()
+                .filter_map(|figure| registry.figures().position(|own| own == figure));
             cells.push(Cell {
                 setting,
                 scenario,
@@ -124,13 +129,19 @@ impl<'a> Settings<'a> {
         let batch: Vec<u32> = self.cells.iter().map(|cell| cell.scenario.trials).collect();
         let stopping = loop {
             self.batch(manifest)?;
-            let Some(width) = self.arguments.until_width else { break None };
+            let Some(width) = self.arguments.until_width else {
+                break None;
+            };
             let stopping = self.stopping(width);
             if stopping.reached || stopping.trials >= stopping.cap {
                 break Some(stopping);
             }
             for (cell, batch) in self.cells.iter_mut().zip(&batch) {
-                cell.scenario.trials = cell.scenario.trials.saturating_add(*batch).min(stopping.cap.max(*batch));
+                cell.scenario.trials = cell
+                    .scenario
+                    .trials
+                    .saturating_add(*batch)
+                    .min(stopping.cap.max(*batch));
             }
         };
         let trials = self.trials();
@@ -147,7 +158,9 @@ impl<'a> Settings<'a> {
             let unknown = (0..cell.scenario.trials).filter(|trial| !cell.told.contains_key(trial));
             let kept = unknown.filter_map(|trial| parts.load(trial).ok());
             let own = kept.filter(|part| part.record.seed == cell.scenario.seed);
-            let read: Vec<_> = own.map(|part| (part.record.trial, cell.registry.read(&part.record))).collect();
+            let read: Vec<_> = own
+                .map(|part| (part.record.trial, cell.registry.read(&part.record)))
+                .collect();
             cell.told.extend(read);
         }
     }
@@ -156,10 +169,7 @@ impl<'a> Settings<'a> {
     fn batch(&mut self, manifest: &StudyManifest) -> Result<(), Failure> {
         self.recall();
         let Self {
-            cells,
-            stop,
-            arguments,
-            ..
+            cells, stop, arguments, ..
         } = self;
         let total = cells.iter().map(|cell| cell.scenario.trials).sum();
         let kept: usize = cells.iter().map(|cell| cell.told.len()).sum();
@@ -248,7 +258,11 @@ impl<'a> Settings<'a> {
             samples: cell
                 .places
                 .iter()
-                .map(|&place| (0..cell.scenario.trials).filter_map(|trial| Some(cell.told.get(&trial)?[place])).collect())
+                .map(|&place| {
+                    (0..cell.scenario.trials)
+                        .filter_map(|trial| Some(cell.told.get(&trial)?[place]))
+                        .collect()
+                })
                 .collect(),
         };
         self.cells.iter().map(of).collect()
@@ -274,14 +288,22 @@ impl<'a> Settings<'a> {
             compared: self.plan.figures.iter().filter_map(place).collect(),
             reference: self.plan.reference,
             relevant: self.plan.relevant,
-            pareto: self.plan.pareto.as_ref().and_then(|[x, y]| Some([place(x)?, place(y)?])),
+            pareto: self
+                .plan
+                .pareto
+                .as_ref()
+                .and_then(|[x, y]| Some([place(x)?, place(y)?])),
         }
     }
 }
 
 /// The figures that all protocols have, in the order of the first.
 fn common(registries: &[Registry]) -> Vec<Figure> {
-    let in_all = |figure: &&Figure| registries.iter().all(|registry| registry.figures().any(|own| own == *figure));
+    let in_all = |figure: &&Figure| {
+        registries
+            .iter()
+            .all(|registry| registry.figures().any(|own| own == *figure))
+    };
     let first = registries.first().into_iter().flat_map(Registry::figures);
     first.filter(in_all).cloned().collect()
 }

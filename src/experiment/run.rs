@@ -91,7 +91,13 @@ impl Pool<'_> {
                 record,
             };
             experiments[experiment].parts.save(&part)?;
-            tracing::info!(experiment, trial, wall_s = part.wall_s, steps = part.record.steps, "finished");
+            tracing::info!(
+                experiment,
+                trial,
+                wall_s = part.wall_s,
+                steps = part.record.steps,
+                "finished"
+            );
             Ok((experiment, part))
         };
         let mut missing: Vec<(usize, u32)> = Vec::new();
@@ -99,7 +105,9 @@ impl Pool<'_> {
             missing.extend(experiment.missing().into_iter().map(|trial| (place, trial)));
         }
         missing.sort_by_key(|&(_, trial)| trial);
-        run_trials(&missing, self.jobs, self.stop, run, |(experiment, part)| finished(experiment, &part))
+        run_trials(&missing, self.jobs, self.stop, run, |(experiment, part)| {
+            finished(experiment, &part)
+        })
     }
 }
 

@@ -58,7 +58,11 @@ impl StudyManifest {
         compare("", &self.plan, &asked.plan, &mut lines);
         if self.settings != asked.settings {
             let names = |settings: &[String]| settings.join(", ");
-            lines.push(format!("settings: {} there, {} now", names(&self.settings), names(&asked.settings)));
+            lines.push(format!(
+                "settings: {} there, {} now",
+                names(&self.settings),
+                names(&asked.settings)
+            ));
         }
         lines
     }
@@ -76,7 +80,9 @@ impl StudyFolder {
     /// The folder at `dir`, which need not exist.
     #[must_use]
     pub fn new(dir: PathBuf) -> Self {
-        let new = dir.ancestors().take_while(|path| !path.as_os_str().is_empty() && !path.exists());
+        let new = dir
+            .ancestors()
+            .take_while(|path| !path.as_os_str().is_empty() && !path.exists());
         let new = new.map(Path::to_owned).collect();
         Self { dir, new }
     }
@@ -108,7 +114,9 @@ impl StudyFolder {
                     found: "manifest.json: the results of one scenario".to_owned(),
                 }),
             },
-            Err(error) if error.kind() == io::ErrorKind::NotADirectory => Err(FolderError::NotAFolder(self.dir.clone())),
+            Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
+                Err(FolderError::NotAFolder(self.dir.clone()))
+            }
             Err(error) => Err(failed("read", &path)(error)),
         }
     }
@@ -185,7 +193,10 @@ impl StudyFolder {
             let path = self.dir.join(name);
             gone(fs::remove_file(&path)).map_err(failed("delete", &path))?;
         }
-        self.new.iter().take_while(|path| fs::remove_dir(path).is_ok()).for_each(drop);
+        self.new
+            .iter()
+            .take_while(|path| fs::remove_dir(path).is_ok())
+            .for_each(drop);
         Ok(())
     }
 
@@ -193,7 +204,9 @@ impl StudyFolder {
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
         let (path, unfinished) = (self.dir.join(name), self.dir.join(UNFINISHED));
         let written = File::create(&unfinished).and_then(|mut file| file.write_all(bytes));
-        written.and_then(|()| fs::rename(&unfinished, &path)).map_err(failed("write", &path))
+        written
+            .and_then(|()| fs::rename(&unfinished, &path))
+            .map_err(failed("write", &path))
     }
 }
 

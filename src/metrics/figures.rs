@@ -161,7 +161,12 @@ impl Registry {
             record.robots_used().map(|robots| robots as f64)
         });
         self.add_plain("lambda2_min", "least λ₂", share, TrialRecord::lambda2_min);
-        self.add_plain("connected_share", "time in one piece", share, TrialRecord::connected_share);
+        self.add_plain(
+            "connected_share",
+            "time in one piece",
+            share,
+            TrialRecord::connected_share,
+        );
     }
 
     fn radio(&mut self) {
@@ -173,9 +178,13 @@ impl Registry {
             ("latency_s.p95", "latency, 95th percentile", 0.95),
             ("latency_s.p99", "latency, 99th percentile", 0.99),
         ] {
-            self.add_plain(key, name, kind, move |record| record.latency.quantile(q).map(Span::as_secs));
+            self.add_plain(key, name, kind, move |record| {
+                record.latency.quantile(q).map(Span::as_secs)
+            });
         }
-        self.add_plain("latency_s.mean", "latency, mean", kind, |record| record.latency.mean_secs());
+        self.add_plain("latency_s.mean", "latency, mean", kind, |record| {
+            record.latency.mean_secs()
+        });
     }
 
     fn bandwidth(&mut self, topics: &[&str]) {
@@ -192,8 +201,12 @@ impl Registry {
         let directions: [(&str, &str, Bytes); 4] = [
             ("tx_bytes_per_step", "bytes sent", |row| row.sent.bytes()),
             ("rx_bytes_per_step", "bytes received", |row| row.received.bytes()),
-            ("tx_payload_bytes_per_step", "payload sent", |row| row.sent.payload_bytes),
-            ("rx_payload_bytes_per_step", "payload received", |row| row.received.payload_bytes),
+            ("tx_payload_bytes_per_step", "payload sent", |row| {
+                row.sent.payload_bytes
+            }),
+            ("rx_payload_bytes_per_step", "payload received", |row| {
+                row.received.payload_bytes
+            }),
         ];
         for (direction, words, bytes) in directions {
             for (spread, q) in [("mean", None), ("median", Some(0.5)), ("max", Some(1.0))] {
@@ -215,12 +228,18 @@ impl Registry {
         self.add_ratio("detection.detection_time_s", "detection time T_D", less, |record| {
             detection_times(&record.detection)
         });
-        self.add_ratio("detection.mistake_rate_hz", "mistake rate λ_M", ("Hz", Better::Lower), move |record| {
-            [count(record), record.detection.monitored_s]
-        });
-        self.add_ratio("detection.mistake_recurrence_s", "mistake recurrence T_MR", more, move |record| {
-            [record.detection.monitored_s, count(record)]
-        });
+        self.add_ratio(
+            "detection.mistake_rate_hz",
+            "mistake rate λ_M",
+            ("Hz", Better::Lower),
+            move |record| [count(record), record.detection.monitored_s],
+        );
+        self.add_ratio(
+            "detection.mistake_recurrence_s",
+            "mistake recurrence T_MR",
+            more,
+            move |record| [record.detection.monitored_s, count(record)],
+        );
         self.add_ratio("detection.mistake_duration_s", "mistake duration T_M", less, |record| {
             durations(&record.detection)
         });
@@ -237,13 +256,26 @@ impl Registry {
             let seen: Vec<_> = episodes.map(|episode| mending(episode, record.simulated)).collect();
             seen
         };
-        self.add_ratio("healing.unmended_s", "time unmended, a failure", (SECONDS, Better::Lower), move |record| {
-            let seen = harmful(record);
-            [seen.iter().map(|seen| seen.time).sum(), seen.len() as f64]
-        });
-        self.add_ratio("healing.healed_ratio", "failures healed", (DIMENSIONLESS, Better::Higher), move |record| {
-            let seen = harmful(record);
-            [seen.iter().filter(|seen| seen.happened).count() as f64, seen.len() as f64]
-        });
+        self.add_ratio(
+            "healing.unmended_s",
+            "time unmended, a failure",
+            (SECONDS, Better::Lower),
+            move |record| {
+                let seen = harmful(record);
+                [seen.iter().map(|seen| seen.time).sum(), seen.len() as f64]
+            },
+        );
+        self.add_ratio(
+            "healing.healed_ratio",
+            "failures healed",
+            (DIMENSIONLESS, Better::Higher),
+            move |record| {
+                let seen = harmful(record);
+                [
+                    seen.iter().filter(|seen| seen.happened).count() as f64,
+                    seen.len() as f64,
+                ]
+            },
+        );
     }
 }

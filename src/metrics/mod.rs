@@ -1,7 +1,7 @@
 //! What a run leaves behind: traffic, fates, connectivity, outcome, and the statistics over trials.
 
-mod config;
 pub mod comparison;
+mod config;
 mod connectivity;
 pub mod detection;
 mod faults;

@@ -49,9 +49,11 @@ impl Page {
 
     /// A heading, after an empty line.
     pub fn heading(&mut self, words: &str) {
-        let words = self.bold(words);
         self.line("");
-        self.line(&words);
+        for line in wrap(words, WIDTH) {
+            let line = self.bold(&line);
+            self.line(&line);
+        }
     }
 
     /// A name on the left, words on the right, over as many lines as they need.

@@ -57,7 +57,8 @@ impl Problem {
         std::iter::once(&self.path).chain(&self.also)
     }
 
-    fn with(mut self, also: &[&str]) -> Self {
+    /// The same, depending on these fields too.
+    pub fn with(mut self, also: &[&str]) -> Self {
         self.also = also.iter().map(|path| FieldPath::of(path)).collect();
         self
     }

@@ -1,8 +1,8 @@
 //! What the reader needs to know of a kind of file: it reads scenarios and studies alike.
 
 use schemars::JsonSchema;
-use serde::de::DeserializeOwned;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use super::checks::{Problem, problems};
 use super::shape::Shape;
@@ -52,7 +52,10 @@ impl Document for Study {
     const STAND_INS: &'static [(&'static str, &'static str)] = &[
         ("name", "name: \"study\""),
         ("base", "base: \"\""),
-        ("factors", "factors: [(name: \"factor\", paths: [\"a\"], levels: [(values: [0]), (values: [1])])]"),
+        (
+            "factors",
+            "factors: [(name: \"factor\", paths: [\"a\"], levels: [(values: [0]), (values: [1])])]",
+        ),
         ("figure", "figure: \"delivery_ratio\""),
     ];
 

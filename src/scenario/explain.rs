@@ -32,7 +32,13 @@ pub struct Finding {
 
 /// Explains `error`, which came up when serde had `reached` this path of `root` in `text`; `whole` is false if serde
 /// could not name the last step.
-pub fn explain<D: Document>(error: &SpannedError, reached: &FieldPath, whole: bool, root: &Node, text: &str) -> Finding {
+pub fn explain<D: Document>(
+    error: &SpannedError,
+    reached: &FieldPath,
+    whole: bool,
+    root: &Node,
+    text: &str,
+) -> Finding {
     let span = bytes(text, error.span.start)..bytes(text, error.span.end);
     let reader = Reader {
         root,
@@ -134,7 +140,11 @@ impl Reader<'_> {
     fn wrong_name(&self, found: &str, path: &FieldPath) -> Finding {
         let (message, help) = if path.0.is_empty() {
             (
-                format!("a {} file holds `{}( ... )`, not `{found}( ... )`", self.word(), self.kind),
+                format!(
+                    "a {} file holds `{}( ... )`, not `{found}( ... )`",
+                    self.word(),
+                    self.kind
+                ),
                 format!("write `{}(`", self.kind),
             )
         } else {

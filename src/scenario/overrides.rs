@@ -158,7 +158,12 @@ impl Override {
                 message: format!("{}{}", self.prefix(), misfit.message),
                 help: Some(misfit.help),
                 path: Some(self.path.to_string()),
-                place: Some(Place::new(&self.name, &self.text, self.steps[misfit.step].clone(), "here")),
+                place: Some(Place::new(
+                    &self.name,
+                    &self.text,
+                    self.steps[misfit.step].clone(),
+                    "here",
+                )),
             })
         })
     }

@@ -24,8 +24,12 @@ pub fn draw(comparison: &Comparison) -> Option<Document> {
     let pareto = comparison.pareto.as_ref().filter(|pareto| !pareto.points.is_empty())?;
     let plane = Plane {
         comparison,
-        x: Axis::of(comparison, comparison.figure(&pareto.x)?, &pareto.points, |point| point.x),
-        y: Axis::of(comparison, comparison.figure(&pareto.y)?, &pareto.points, |point| point.y),
+        x: Axis::of(comparison, comparison.figure(&pareto.x)?, &pareto.points, |point| {
+            point.x
+        }),
+        y: Axis::of(comparison, comparison.figure(&pareto.y)?, &pareto.points, |point| {
+            point.y
+        }),
     };
     Some(plane.document(&pareto.points))
 }
@@ -48,8 +52,14 @@ impl<'a> Axis<'a> {
             let [low, high] = interval(comparison, point, figure);
             [Some(value(point)), low, high].into_iter().flatten()
         });
-        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| (low.min(end), high.max(end)));
-        let margin = if high > low { 0.06 * (high - low) } else { 0.5 * high.abs().max(1e-9) };
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| {
+            (low.min(end), high.max(end))
+        });
+        let margin = if high > low {
+            0.06 * (high - low)
+        } else {
+            0.5 * high.abs().max(1e-9)
+        };
         Self {
             figure,
             low: low - margin,
@@ -70,7 +80,9 @@ impl<'a> Axis<'a> {
         let digits = (-step.log10().floor()).max(0.0) as usize;
         let first = (self.low / step).ceil() as i64;
         let last = (self.high / step).floor() as i64;
-        (first..=last).map(|tick| (tick as f64 * step, format!("{:.digits$}", tick as f64 * step))).collect()
+        (first..=last)
+            .map(|tick| (tick as f64 * step, format!("{:.digits$}", tick as f64 * step)))
+            .collect()
     }
 
     fn title(&self) -> String {
@@ -109,7 +121,10 @@ impl Plane<'_> {
             .set("width", format!("{WIDTH:.0}"))
             .set("height", format!("{HEIGHT:.0}"))
             .set("font-family", "Helvetica, Arial, sans-serif");
-        document.append(element("rect", [("width", "100%"), ("height", "100%"), ("fill", "#ffffff")]));
+        document.append(element(
+            "rect",
+            [("width", "100%"), ("height", "100%"), ("fill", "#ffffff")],
+        ));
         document.append(text(Vec2::new(LEFT, 26.0), 17.0, "start", TEXT, &self.comparison.study));
         let subtitle = "settings with 95 % intervals; joined: those that no other beats in both";
         document.append(text(Vec2::new(LEFT, 47.0), 13.0, "start", AXIS, subtitle));
@@ -128,7 +143,10 @@ impl Plane<'_> {
         let stroke = stroke(AXIS, 1.0, 1.0);
         let (bottom, right) = (TOP + UP, LEFT + ACROSS);
         let corner = Vec2::new(LEFT, bottom);
-        document.append(polyline(&[Vec2::new(LEFT, TOP), corner, Vec2::new(right, bottom)], stroke));
+        document.append(polyline(
+            &[Vec2::new(LEFT, TOP), corner, Vec2::new(right, bottom)],
+            stroke,
+        ));
         for (value, label) in self.x.ticks() {
             let at = Vec2::new(self.pixel(value, self.y.low).x, bottom);
             document.append(line(at, at + Vec2::new(0.0, 5.0), stroke));
@@ -148,8 +166,11 @@ impl Plane<'_> {
 
     /// The line through those that no other beats.
     fn front(&self, document: &mut Document, points: &[ParetoPoint]) {
-        let mut front: Vec<Vec2> =
-            points.iter().filter(|point| point.on_front).map(|point| self.pixel(point.x, point.y)).collect();
+        let mut front: Vec<Vec2> = points
+            .iter()
+            .filter(|point| point.on_front)
+            .map(|point| self.pixel(point.x, point.y))
+            .collect();
         front.sort_by(|a, b| a.x.total_cmp(&b.x));
         document.append(polyline(&front, stroke(FRONT, 1.6, 0.6)));
     }
@@ -177,7 +198,10 @@ impl Plane<'_> {
                 size: 5.0,
             },
         ));
-        let label = self.comparison.setting(&point.setting).map_or(point.setting.as_str(), |setting| &setting.label);
+        let label = self
+            .comparison
+            .setting(&point.setting)
+            .map_or(point.setting.as_str(), |setting| &setting.label);
         document.append(text(at + Vec2::new(8.0, -7.0), 12.0, "start", TEXT, label));
     }
 }
@@ -187,9 +211,5 @@ fn colour(point: &ParetoPoint) -> &'static str {
 }
 
 fn stroke(colour: &'static str, width: f64, opacity: f64) -> Stroke {
-    Stroke {
-        colour,
-        width,
-        opacity,
-    }
+    Stroke { colour, width, opacity }
 }

@@ -183,10 +183,19 @@ impl Comparison {
 fn pairs(design: &Design, trials: &[Trials]) -> Vec<Pair> {
     let settings = 0..trials.len();
     let held: Vec<(usize, usize)> = match design.reference {
-        Some(reference) => settings.filter(|&it| it != reference).map(|it| (reference, it)).collect(),
-        None => settings.clone().flat_map(|a| (a + 1..trials.len()).map(move |b| (a, b))).collect(),
+        Some(reference) => settings
+            .filter(|&it| it != reference)
+            .map(|it| (reference, it))
+            .collect(),
+        None => settings
+            .clone()
+            .flat_map(|a| (a + 1..trials.len()).map(move |b| (a, b)))
+            .collect(),
     };
-    let all = design.compared.iter().flat_map(|figure| held.iter().map(move |held| (*figure, *held)));
+    let all = design
+        .compared
+        .iter()
+        .flat_map(|figure| held.iter().map(move |held| (*figure, *held)));
     let all: Vec<_> = all.collect();
     let alpha = SIGNIFICANT / all.len().max(1) as f64;
     let mut pairs: Vec<Pair> = all

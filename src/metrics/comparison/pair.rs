@@ -129,7 +129,10 @@ impl Pair {
             setting: setting.name.clone(),
             against: against.name.clone(),
             paired,
-            relative: difference.value.map(|value| value / base.abs()).filter(|share| share.is_finite()),
+            relative: difference
+                .value
+                .map(|value| value / base.abs())
+                .filter(|share| share.is_finite()),
             difference,
             cliffs_delta: delta(samples, &resamples),
             p: if paired { tests.permutation } else { tests.mann_whitney },
@@ -198,11 +201,17 @@ impl Tests {
     fn of(may_be_cut_off: bool, paired: bool, samples: [&[Sample]; 2], parts: &[Vec<Part>; 2]) -> Self {
         let values = |samples: &[Sample]| samples.iter().filter_map(Sample::value).collect::<Vec<f64>>();
         let pairs = samples[0].iter().zip(samples[1]);
-        let differences = || pairs.filter_map(|(a, b)| Some(b.value()? - a.value()?)).collect::<Vec<f64>>();
+        let differences = || {
+            pairs
+                .filter_map(|(a, b)| Some(b.value()? - a.value()?))
+                .collect::<Vec<f64>>()
+        };
         Self {
             permutation: paired.then(|| paired_permutation(&parts[0], &parts[1])).flatten(),
             wilcoxon: paired.then(|| wilcoxon(&differences())).flatten(),
-            mann_whitney: (!paired).then(|| mann_whitney(&values(samples[0]), &values(samples[1]))).flatten(),
+            mann_whitney: (!paired)
+                .then(|| mann_whitney(&values(samples[0]), &values(samples[1])))
+                .flatten(),
             log_rank: may_be_cut_off
                 .then(|| log_rank(&observations(samples[0]), &observations(samples[1])))
                 .flatten(),
@@ -220,7 +229,8 @@ impl Gain {
         Some(Self {
             paired_variance,
             independent_variance,
-            ratio: Some(independent_variance / paired_variance).filter(|ratio| ratio.is_finite()),
+            // Pairs that differ by rounding alone do not vary.
+            ratio: (paired_variance > 1e-20 * independent_variance).then(|| independent_variance / paired_variance),
         })
     }
 }

@@ -78,7 +78,11 @@ impl Setting {
     /// A figure by its key.
     #[must_use]
     pub fn figure(&self, key: &str) -> Option<&Estimated> {
-        self.figures.0.iter().find(|(name, _)| name == key).map(|(_, figure)| figure)
+        self.figures
+            .0
+            .iter()
+            .find(|(name, _)| name == key)
+            .map(|(_, figure)| figure)
     }
 }
 

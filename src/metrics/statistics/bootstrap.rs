@@ -27,9 +27,16 @@ impl Resamples {
         let streams = Streams::new(0, 0).keyed(RESAMPLE);
         let draw = |number, group: usize, size: usize| {
             let mut random: Philox = streams.at(number, group as u32, size as u32);
-            (0..size).map(|_| random.random_range(0..size as u64) as usize).collect()
+            (0..size)
+                .map(|_| random.random_range(0..size as u64) as usize)
+                .collect()
         };
-        let groups = |number| sizes.iter().enumerate().map(move |(group, &size)| draw(number, group, size));
+        let groups = |number| {
+            sizes
+                .iter()
+                .enumerate()
+                .map(move |(group, &size)| draw(number, group, size))
+        };
         Self {
             sizes: sizes.to_vec(),
             drawn: (0..RESAMPLES).map(|number| groups(number).collect()).collect(),
@@ -91,7 +98,11 @@ fn acceleration(all: &[Vec<usize>], statistic: &impl Fn(&[Vec<usize>]) -> f64) -
 fn percentile(sorted: &[f64], level: f64) -> Option<f64> {
     let rank = sorted.len().checked_sub(1)? as f64 * level;
     let (below, above) = (sorted[rank.floor() as usize], sorted[rank.ceil() as usize]);
-    Some(if below == above { below } else { below + (above - below) * rank.fract() })
+    Some(if below == above {
+        below
+    } else {
+        below + (above - below) * rank.fract()
+    })
 }
 
 fn probit(probability: f64) -> f64 {
@@ -124,8 +135,13 @@ mod tests {
     /// within three of them of scipy's, between its percentiles at 0.0145 and 0.0355; `spread` is that distance, taken from
     /// the standard error σ: σ (z(0.0145) − z(0.025)) = 0.22 σ, and as much again for the bias, which resamples estimate too.
     fn assert_near(interval: Ci95, scipy: [f64; 2], spread: f64) {
-        let [Some(low), Some(high)] = interval else { panic!("{interval:?}") };
-        assert!((low - scipy[0]).abs() <= spread && (high - scipy[1]).abs() <= spread, "{low} {high}, not {scipy:?}");
+        let [Some(low), Some(high)] = interval else {
+            panic!("{interval:?}")
+        };
+        assert!(
+            (low - scipy[0]).abs() <= spread && (high - scipy[1]).abs() <= spread,
+            "{low} {high}, not {scipy:?}"
+        );
     }
 
     // scipy.stats.bootstrap(data, statistic, n_resamples=400_000, method="BCa", paired=..., rng=numpy.random.default_rng(1))

@@ -6,7 +6,10 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// any difference shows one. A test that has no p-value counts for nothing.
 #[must_use]
 pub fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
-    let mut order: Vec<(f64, usize)> = (0..).zip(p_values).filter_map(|(index, p)| Some(((*p)?, index))).collect();
+    let mut order: Vec<(f64, usize)> = (0..)
+        .zip(p_values)
+        .filter_map(|(index, p)| Some(((*p)?, index)))
+        .collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut adjusted = vec![None; p_values.len()];
     let mut least: f64 = 0.0;

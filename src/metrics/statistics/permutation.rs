@@ -18,7 +18,9 @@ pub type Part = [f64; 2];
 /// Ratio of the sums of `parts`; not finite where nothing was counted.
 #[must_use]
 pub fn ratio_of_sums(parts: impl IntoIterator<Item = Part>) -> f64 {
-    let [a, b] = parts.into_iter().fold([0.0, 0.0], |[a, b], part| [a + part[0], b + part[1]]);
+    let [a, b] = parts
+        .into_iter()
+        .fold([0.0, 0.0], |[a, b], part| [a + part[0], b + part[1]]);
     a / b
 }
 
@@ -43,7 +45,9 @@ pub fn paired_permutation(a: &[Part], b: &[Part]) -> Option<f64> {
     };
     if pairs.len() <= EXACT_PAIRS {
         let ways = 1_u32 << pairs.len();
-        let large = (0..ways).filter(|way| is_as_large(&|pair| way >> pair & 1 == 1)).count();
+        let large = (0..ways)
+            .filter(|way| is_as_large(&|pair| way >> pair & 1 == 1))
+            .count();
         return Some(large as f64 / f64::from(ways));
     }
     let streams = Streams::new(0, 0).keyed(SWAP);
@@ -90,7 +94,9 @@ mod tests {
         // Twenty pairs that all differ by 1 but five, which differ by −1: sums of ±1 at least as large as 10, 2·P(Bin(20, ½) ≥ 15)
         // = 0.041_39; of 9,999 permutations, ± 3·√(0.0414·0.9586/9,999) = 0.006.
         let a = plain(&[0.0; 20]);
-        let b = plain(&std::array::from_fn::<_, 20, _>(|pair| if pair < 5 { -1.0 } else { 1.0 }));
+        let b = plain(&std::array::from_fn::<_, 20, _>(
+            |pair| if pair < 5 { -1.0 } else { 1.0 },
+        ));
         let p = paired_permutation(&a, &b).unwrap();
         assert!((p - 0.0414).abs() < 0.006, "{p}");
     }

@@ -17,7 +17,12 @@ pub fn wilcoxon(differences: &[f64]) -> Option<f64> {
     sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
     let n = sizes.len();
     let Ranked { ranks, ties } = Ranked::of(sizes.iter().map(|(size, _)| *size));
-    let positive: f64 = ranks.iter().zip(&sizes).filter(|(_, (_, positive))| *positive).map(|(rank, _)| rank).sum();
+    let positive: f64 = ranks
+        .iter()
+        .zip(&sizes)
+        .filter(|(_, (_, positive))| *positive)
+        .map(|(rank, _)| rank)
+        .sum();
     let count = n as f64;
     if n == 0 {
         return None;
@@ -43,7 +48,12 @@ pub fn mann_whitney(a: &[f64], b: &[f64]) -> Option<f64> {
     pooled.extend(b.iter().map(|&value| (value, false)));
     pooled.sort_by(|x, y| x.0.total_cmp(&y.0));
     let Ranked { ranks, ties } = Ranked::of(pooled.iter().map(|(value, _)| *value));
-    let of_a: f64 = ranks.iter().zip(&pooled).filter(|(_, (_, is_a))| *is_a).map(|(rank, _)| rank).sum();
+    let of_a: f64 = ranks
+        .iter()
+        .zip(&pooled)
+        .filter(|(_, (_, is_a))| *is_a)
+        .map(|(rank, _)| rank)
+        .sum();
     let (first, second) = (n as f64, m as f64);
     let u = of_a - first * (first + 1.0) / 2.0;
     if ties == 0.0 && n <= EXACT && m <= EXACT {
@@ -79,11 +89,16 @@ struct Ranked {
 impl Ranked {
     fn of(sorted: impl Iterator<Item = f64>) -> Self {
         let sorted: Vec<f64> = sorted.collect();
-        let mut ranked = Self { ranks: Vec::new(), ties: 0.0 };
+        let mut ranked = Self {
+            ranks: Vec::new(),
+            ties: 0.0,
+        };
         for equal in sorted.chunk_by(|a, b| a == b) {
             let (before, count) = (ranked.ranks.len() as f64, equal.len() as f64);
             ranked.ties += count.powi(3) - count;
-            ranked.ranks.extend(std::iter::repeat_n(before + f64::midpoint(count, 1.0), equal.len()));
+            ranked
+                .ranks
+                .extend(std::iter::repeat_n(before + f64::midpoint(count, 1.0), equal.len()));
         }
         ranked
     }
@@ -150,7 +165,10 @@ mod tests {
     #[test]
     fn signed_ranks_have_the_p_values_of_scipy() {
         // scipy.stats.wilcoxon(d, method="exact")
-        assert_p(wilcoxon(&[1.83, 0.5, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, -1.3, 0.231]), 0.009_765_625);
+        assert_p(
+            wilcoxon(&[1.83, 0.5, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, -1.3, 0.231]),
+            0.009_765_625,
+        );
         // scipy.stats.wilcoxon(y, x, method="approx"), with ties
         let differences: Vec<f64> = X.iter().zip(Y).map(|(x, y)| y - x).collect();
         assert_p(wilcoxon(&differences), 0.041_094_854_763_548_73);

@@ -83,14 +83,21 @@ fn band(survival: f64, greenwood: f64) -> [f64; 2] {
 /// It makes no use of pairs, and so says less than it might where trials share their random numbers. `None` where nothing happened.
 #[must_use]
 pub fn log_rank(a: &[Observation], b: &[Observation]) -> Option<f64> {
-    let mut times: Vec<f64> = a.iter().chain(b).filter(|seen| seen.happened).map(|seen| seen.time).collect();
+    let mut times: Vec<f64> = a
+        .iter()
+        .chain(b)
+        .filter(|seen| seen.happened)
+        .map(|seen| seen.time)
+        .collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
     let (mut surplus, mut variance) = (0.0, 0.0);
     for time in times {
         let at_risk = |group: &[Observation]| group.iter().filter(|seen| seen.time >= time).count() as f64;
         let happened = |group: &[Observation]| {
-            let now = group.iter().filter(|seen| seen.happened && seen.time.total_cmp(&time).is_eq());
+            let now = group
+                .iter()
+                .filter(|seen| seen.happened && seen.time.total_cmp(&time).is_eq());
             now.count() as f64
         };
         let (n, share) = (at_risk(a) + at_risk(b), at_risk(a) / (at_risk(a) + at_risk(b)));

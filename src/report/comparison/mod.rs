@@ -54,7 +54,11 @@ pub fn comparison(input: &ComparisonInput) -> String {
 fn compared(comparison: &Comparison) -> String {
     let trials = comparison.settings.iter().map(|setting| setting.trials);
     let (least, most) = (trials.clone().min().unwrap_or(0), trials.max().unwrap_or(0));
-    let trials = if least == most { count(most) } else { format!("{} to {}", count(least), count(most)) };
+    let trials = if least == most {
+        count(most)
+    } else {
+        format!("{} to {}", count(least), count(most))
+    };
     let how = if comparison.paired {
         "paired by common random numbers"
     } else {

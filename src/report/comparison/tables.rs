@@ -14,20 +14,30 @@ const ABREAST: usize = 2;
 fn put(page: &mut Page, header: Vec<String>, rows: impl Iterator<Item = Vec<String>>) {
     let mut table = Table::new();
     table.load_style(RULED).set_header(header);
-    table.set_content_arrangement(ContentArrangement::Dynamic).set_width(WIDTH as u16);
+    table
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(WIDTH as u16);
     for row in rows {
         table.add_row(row);
     }
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((2, 0));
-        let alignment = if index == 0 { CellAlignment::Left } else { CellAlignment::Right };
+        let alignment = if index == 0 {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        };
         column.set_cell_alignment(alignment);
     }
     page.line(&table.trim_fmt());
 }
 
 fn compared(comparison: &Comparison) -> Vec<&Figure> {
-    comparison.compared.iter().filter_map(|key| comparison.figure(key)).collect()
+    comparison
+        .compared
+        .iter()
+        .filter_map(|key| comparison.figure(key))
+        .collect()
 }
 
 fn title(figure: &Figure) -> String {
@@ -56,7 +66,13 @@ pub fn settings(page: &mut Page, comparison: &Comparison) {
         });
         put(page, header.collect(), rows);
     }
-    let primary = |setting: &Setting| setting.figures.0.iter().any(|(_, figure)| figure.survival.as_ref().is_some_and(|survival| survival.censored > 0));
+    let primary = |setting: &Setting| {
+        setting
+            .figures
+            .0
+            .iter()
+            .any(|(_, figure)| figure.survival.as_ref().is_some_and(|survival| survival.censored > 0))
+    };
     if comparison.settings.iter().any(primary) {
         page.line("");
         page.words("Means of steps are restricted: a trial that did not complete counts with the time limit.");
@@ -78,11 +94,17 @@ fn marked(comparison: &Comparison, setting: &Setting) -> String {
 
 /// The value; of what may be cut off, also the median.
 fn value(setting: &Setting, figure: &Figure) -> String {
-    let Some(estimated) = setting.figure(&figure.key) else { return NOTHING.to_owned() };
+    let Some(estimated) = setting.figure(&figure.key) else {
+        return NOTHING.to_owned();
+    };
     let mean = fitted(&estimated.estimate);
     match &estimated.survival {
         Some(survival) if survival.censored > 0 => {
-            format!("{mean}\nmedian {}, {} cut off", fitted(&survival.median), count(survival.censored))
+            format!(
+                "{mean}\nmedian {}, {} cut off",
+                fitted(&survival.median),
+                count(survival.censored)
+            )
         }
         Some(survival) => format!("{mean}\nmedian {}", fitted(&survival.median)),
         None => mean,
@@ -92,10 +114,19 @@ fn value(setting: &Setting, figure: &Figure) -> String {
 /// A table of differences for each figure.
 pub fn differences(page: &mut Page, comparison: &Comparison) {
     for figure in compared(comparison) {
-        let against = comparison.reference.as_deref().map_or("pairs of settings", |name| label(comparison, name));
-        page.heading(&format!("Differences in {}, against {against}", figure.name));
+        let against = comparison
+            .reference
+            .as_deref()
+            .map_or("", |name| label(comparison, name));
+        let heading = match comparison.reference {
+            Some(_) => format!("Differences in {}, against {against}", figure.name),
+            None => format!("Differences in {}, pair by pair", figure.name),
+        };
+        page.heading(&heading);
         let header = ["", "difference", "relative", "Cliff's δ", "p adjusted", ""].map(str::to_owned);
-        let rows = comparison.pairs_in(&figure.key).map(|pair| difference(comparison, pair));
+        let rows = comparison
+            .pairs_in(&figure.key)
+            .map(|pair| difference(comparison, pair));
         put(page, header.to_vec(), rows);
     }
     let unclear = |pair: &Pair| pair.verdict == Verdict::NoDetectableDifference && pair.plan.is_some();
@@ -121,7 +152,10 @@ fn difference(comparison: &Comparison, pair: &Pair) -> Vec<String> {
         (Verdict::NoDetectableDifference, None) => "unclear".to_owned(),
         (Verdict::NotComparable, _) => NOTHING.to_owned(),
     };
-    let delta = pair.cliffs_delta.value.map_or(NOTHING.to_owned(), |delta| format!("{delta:.2}").replace('-', "−"));
+    let delta = pair
+        .cliffs_delta
+        .value
+        .map_or(NOTHING.to_owned(), |delta| format!("{delta:.2}").replace('-', "−"));
     vec![
         name,
         fitted(&pair.difference),
@@ -134,17 +168,36 @@ fn difference(comparison: &Comparison, pair: &Pair) -> Vec<String> {
 
 /// What common random numbers gain, in the figure that the study is about.
 pub fn gains(page: &mut Page, comparison: &Comparison) {
-    let Some(figure) = comparison.figure(&comparison.primary) else { return };
-    let gains: Vec<_> = comparison.pairs_in(&figure.key).filter_map(|pair| Some((pair, pair.gain.as_ref()?))).collect();
+    let Some(figure) = comparison.figure(&comparison.primary) else {
+        return;
+    };
+    let gains: Vec<_> = comparison
+        .pairs_in(&figure.key)
+        .filter_map(|pair| Some((pair, pair.gain.as_ref()?)))
+        .collect();
     if gains.is_empty() {
         return;
     }
-    page.heading(&format!("Common random numbers: variance of differences in {}", figure.name));
+    page.heading(&format!(
+        "Common random numbers: variance of differences in {}",
+        figure.name
+    ));
     let header = ["", "paired", "independent seeds", "gain"].map(str::to_owned);
     let rows = gains.iter().map(|(pair, gain)| {
-        let name = format!("{} − {}", label(comparison, &pair.setting), label(comparison, &pair.against));
-        let ratio = gain.ratio.map_or(NOTHING.to_owned(), |ratio| format!("× {}", number(ratio)));
-        vec![name, number(gain.paired_variance), number(gain.independent_variance), ratio]
+        let name = format!(
+            "{} − {}",
+            label(comparison, &pair.setting),
+            label(comparison, &pair.against)
+        );
+        let ratio = gain
+            .ratio
+            .map_or(NOTHING.to_owned(), |ratio| format!("× {}", number(ratio)));
+        vec![
+            name,
+            number(gain.paired_variance),
+            number(gain.independent_variance),
+            ratio,
+        ]
     });
     put(page, header.to_vec(), rows);
 }
@@ -154,7 +207,17 @@ pub fn pareto(page: &mut Page, comparison: &Comparison) {
     let Some(pareto) = &comparison.pareto else { return };
     let [x, y] = [&pareto.x, &pareto.y].map(|key| comparison.figure(key));
     let (Some(x), Some(y)) = (x, y) else { return };
-    page.heading(&format!("No other setting beats these in both {} and {}", x.name, y.name));
-    let front: Vec<&str> = pareto.points.iter().filter(|point| point.on_front).map(|point| label(comparison, &point.setting)).collect();
-    page.words(&front.join("; "));
+    page.heading("Pareto front");
+    let front: Vec<&str> = pareto
+        .points
+        .iter()
+        .filter(|point| point.on_front)
+        .map(|point| label(comparison, &point.setting))
+        .collect();
+    page.words(&format!(
+        "No other setting beats these in both {} and {}: {}.",
+        x.name,
+        y.name,
+        front.join("; ")
+    ));
 }

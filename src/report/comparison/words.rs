@@ -16,15 +16,22 @@ pub fn describe(comparison: &mut Comparison) {
 
 /// The value, with as many digits as its interval makes sense of.
 pub fn fitted(estimate: &Estimate) -> String {
-    let Some(value) = estimate.value else { return NOTHING.to_owned() };
+    let Some(value) = estimate.value else {
+        return NOTHING.to_owned();
+    };
     let half = match estimate.ci95 {
-        [Some(low), Some(high)] if high > low => (high - low) / 2.0,
+        // A width that is all rounding is none.
+        [Some(low), Some(high)] if high - low > 1e-9 * value.abs() => (high - low) / 2.0,
         _ => return signed(value, &number(value.abs())),
     };
     let digits = (-half.log10().floor()).max(0.0) as usize + usize::from(half < 1.0);
     let write = |value: f64| {
         let written = format!("{:.digits$}", value.abs());
-        let grouped = if digits == 0 { count(value.abs().round() as u64) } else { written };
+        let grouped = if digits == 0 {
+            count(value.abs().round() as u64)
+        } else {
+            written
+        };
         signed(value, &grouped)
     };
     let [low, high] = estimate.ci95.map(|end| end.map_or(NOTHING.to_owned(), write));
@@ -33,7 +40,11 @@ pub fn fitted(estimate: &Estimate) -> String {
 
 fn signed(value: f64, written: &str) -> String {
     let is_zero = !written.contains(|digit: char| ('1'..='9').contains(&digit));
-    if value < 0.0 && !is_zero { format!("−{written}") } else { written.to_owned() }
+    if value < 0.0 && !is_zero {
+        format!("−{written}")
+    } else {
+        written.to_owned()
+    }
 }
 
 /// A figure's value with its unit.
@@ -56,9 +67,12 @@ pub fn probability(p: Option<f64>) -> String {
 /// A relative difference in percent.
 pub fn percent(share: Option<f64>) -> String {
     share.map_or(NOTHING.to_owned(), |share| {
-        let digits = usize::from(share.abs() < 0.0995);
-        let percent = format!("{:.digits$}", share.abs() * 100.0);
-        format!("{} %", signed(share, &percent))
+        let percent = share.abs() * 100.0;
+        let written = match percent {
+            _ if percent < 9.95 => format!("{percent:.1}"),
+            _ => count(percent.round() as u64),
+        };
+        format!("{} %", signed(share, &written))
     })
 }
 
@@ -73,28 +87,48 @@ fn change(pair: &Pair, figure: &Figure) -> String {
     let [low, high] = pair.difference.ci95;
     let size = Estimate {
         value: pair.difference.value.map(f64::abs),
-        ci95: if falls { [high.map(|end| -end), low.map(|end| -end)] } else { [low, high] },
+        ci95: if falls {
+            [high.map(|end| -end), low.map(|end| -end)]
+        } else {
+            [low, high]
+        },
         n: pair.difference.n,
     };
     let (way, less) = if falls { ("lower", "less") } else { ("higher", "more") };
-    let relative = pair.relative.map_or(String::new(), |share| format!(" ({} {less})", percent(Some(share.abs()))));
+    let relative = pair.relative.map_or(String::new(), |share| {
+        format!(" ({} {less})", percent(Some(share.abs())))
+    });
     format!("{way} by {}{relative}", with_unit(&fitted(&size), figure))
 }
 
 fn of_pair(comparison: &Comparison, pair: &Pair) -> String {
-    let Some(figure) = comparison.figure(&pair.figure) else { return String::new() };
+    let Some(figure) = comparison.figure(&pair.figure) else {
+        return String::new();
+    };
     let [setting, against] = [&pair.setting, &pair.against].map(|name| label(comparison, name));
     let name = &figure.name;
     let p = format!("adjusted p {}", probability(pair.p_adjusted));
     match pair.verdict {
-        Verdict::NotComparable => format!("{name}: {setting} and {against} cannot be compared, for one of them has no value"),
+        Verdict::NotComparable => {
+            format!("{name}: {setting} and {against} cannot be compared, for one of them has no value")
+        }
         Verdict::NoDetectableDifference => {
             let seen = format!("{name}: no detectable difference between {setting} and {against}");
-            format!("{seen} ({}, {p}){}", fitted(&pair.difference), planned(comparison, pair, figure))
+            format!(
+                "{seen} ({}, {p}){}",
+                fitted(&pair.difference),
+                planned(comparison, pair, figure)
+            )
         }
         Verdict::Better | Verdict::Worse => {
-            let verdict = if pair.verdict == Verdict::Better { "better" } else { "worse" };
-            let delta = pair.cliffs_delta.value.map_or(NOTHING.to_owned(), |delta| signed(delta, &format!("{:.2}", delta.abs())));
+            let verdict = if pair.verdict == Verdict::Better {
+                "better"
+            } else {
+                "worse"
+            };
+            let delta = pair.cliffs_delta.value.map_or(NOTHING.to_owned(), |delta| {
+                signed(delta, &format!("{:.2}", delta.abs()))
+            });
             format!(
                 "{name}: {setting} is {verdict} than {against}, {}, Cliff's δ {delta}, {p}",
                 change(pair, figure)
@@ -118,19 +152,30 @@ fn planned(comparison: &Comparison, pair: &Pair, figure: &Figure) -> String {
 
 /// How adding trials ended.
 pub fn stopping(stopping: &Stopping, comparison: &Comparison) -> String {
-    let name = comparison.figure(&stopping.figure).map_or(stopping.figure.as_str(), |figure| figure.name.as_str());
-    let (widest, trials) = (stopping.widest.map_or(NOTHING.to_owned(), number), count(stopping.trials.into()));
+    let name = comparison
+        .figure(&stopping.figure)
+        .map_or(stopping.figure.as_str(), |figure| figure.name.as_str());
+    let (widest, trials) = (
+        stopping.widest.map_or(NOTHING.to_owned(), number),
+        count(stopping.trials.into()),
+    );
     let asked = number(stopping.width);
     if stopping.reached {
-        format!("after {trials} trials of each setting: no interval of {name} is wider than {widest}, and {asked} was asked for")
+        format!(
+            "after {trials} trials of each setting: no interval of {name} is wider than {widest}, and {asked} was asked for"
+        )
     } else {
-        format!("at the cap of {trials} trials of each setting: the widest interval of {name} is {widest}, and {asked} was asked for")
+        format!(
+            "at the cap of {trials} trials of each setting: the widest interval of {name} is {widest}, and {asked} was asked for"
+        )
     }
 }
 
 /// What the study found.
 fn finding(comparison: &Comparison) -> String {
-    let Some(figure) = comparison.figure(&comparison.primary) else { return String::new() };
+    let Some(figure) = comparison.figure(&comparison.primary) else {
+        return String::new();
+    };
     let Some(best) = best(comparison, figure) else {
         return format!("No setting has a value of {}.", figure.name);
     };
@@ -150,7 +195,10 @@ fn best<'a>(comparison: &'a Comparison, figure: &Figure) -> Option<&'a Setting> 
 }
 
 fn value(setting: &Setting, figure: &Figure) -> String {
-    let estimate = setting.figure(&figure.key).map(|estimated| estimated.estimate).unwrap_or_default();
+    let estimate = setting
+        .figure(&figure.key)
+        .map(|estimated| estimated.estimate)
+        .unwrap_or_default();
     with_unit(&fitted(&estimate), figure)
 }
 
@@ -173,9 +221,14 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &Setting, r
         pairs.len(),
         if better == 1 { "is" } else { "are" },
     );
-    let at_reference = comparison.setting(reference).map_or(String::new(), |setting| value(setting, figure));
+    let at_reference = comparison
+        .setting(reference)
+        .map_or(String::new(), |setting| value(setting, figure));
     let Some(pair) = pairs.iter().find(|pair| pair.setting == best.name) else {
-        return format!("No setting has a {} {name} than {there}, {at_reference}. {tally}", comparative(figure));
+        return format!(
+            "No setting has a {} {name} than {there}, {at_reference}. {tally}",
+            comparative(figure)
+        );
     };
     if pair.verdict != Verdict::Better {
         return format!("No setting is detectably better than {there} in {name} ({at_reference}). {tally}");
@@ -190,7 +243,9 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &Setting, r
     );
     for key in comparison.compared.iter().skip(1) {
         let Some(figure) = comparison.figure(key) else { continue };
-        let Some(pair) = comparison.pairs_in(key).find(|pair| pair.setting == best.name) else { continue };
+        let Some(pair) = comparison.pairs_in(key).find(|pair| pair.setting == best.name) else {
+            continue;
+        };
         found.push(' ');
         found.push_str(&aside(comparison, pair, figure));
     }
@@ -210,7 +265,10 @@ fn aside(comparison: &Comparison, pair: &Pair, figure: &Figure) -> String {
     match pair.verdict {
         Verdict::NotComparable => format!("There, {name} cannot be compared."),
         Verdict::NoDetectableDifference => {
-            format!("There, {name} shows no detectable difference{}.", planned(comparison, pair, figure))
+            format!(
+                "There, {name} shows no detectable difference{}.",
+                planned(comparison, pair, figure)
+            )
         }
         Verdict::Better => format!("There, {name} is better: {}.", change(pair, figure)),
         Verdict::Worse => format!("There, {name} is worse: {}.", change(pair, figure)),
@@ -228,11 +286,20 @@ fn among_all(comparison: &Comparison, figure: &Figure, best: &Setting) -> String
         } else {
             continue;
         };
-        let group = if pair.verdict == wins { &mut beaten } else { &mut unclear };
+        let group = if pair.verdict == wins {
+            &mut beaten
+        } else {
+            &mut unclear
+        };
         group.push(label(comparison, other));
     }
     let name = &figure.name;
-    let found = format!("{} has the {} {name}: {}.", best.label, superlative(figure), value(best, figure));
+    let found = format!(
+        "{} has the {} {name}: {}.",
+        best.label,
+        superlative(figure),
+        value(best, figure)
+    );
     match (&beaten[..], &unclear[..]) {
         (beaten, []) => format!("{found} It is detectably better than {}.", beaten.join("; ")),
         ([], unclear) => format!("{found} No detectable difference from {}.", unclear.join("; ")),

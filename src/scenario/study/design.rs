@@ -30,7 +30,12 @@ pub fn count(study: &Study) -> usize {
             .factors
             .iter()
             .fold(1_usize, |count, factor| count.saturating_mul(factor.levels.len())),
-        DesignConfig::Paired => study.factors.iter().map(|factor| factor.levels.len()).min().unwrap_or(0),
+        DesignConfig::Paired => study
+            .factors
+            .iter()
+            .map(|factor| factor.levels.len())
+            .min()
+            .unwrap_or(0),
         DesignConfig::Explicit(settings) => settings.len(),
     }
 }

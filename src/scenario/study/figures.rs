@@ -34,7 +34,10 @@ pub fn usual(plan: &Plan) -> Vec<String> {
         "delivery_ratio",
         "detection.mistake_rate_hz",
     ];
-    keys.into_iter().skip(usize::from(!mission)).map(str::to_owned).collect()
+    keys.into_iter()
+        .skip(usize::from(!mission))
+        .map(str::to_owned)
+        .collect()
 }
 
 /// Says that a figure is not known, and which may be meant.

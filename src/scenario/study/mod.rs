@@ -96,7 +96,13 @@ impl LevelConfig {
     /// What people call it.
     #[must_use]
     pub fn label(&self) -> String {
-        let written = || self.values.iter().map(|value| value.0.as_str()).collect::<Vec<_>>().join(", ");
+        let written = || {
+            self.values
+                .iter()
+                .map(|value| value.0.as_str())
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
         self.label.clone().unwrap_or_else(written)
     }
 }
@@ -123,5 +129,7 @@ pub fn is_study(text: &str) -> bool {
 /// The JSON Schema of study files.
 #[must_use]
 pub fn study_schema() -> Schema {
-    SchemaSettings::draft2020_12().into_generator().into_root_schema_for::<Study>()
+    SchemaSettings::draft2020_12()
+        .into_generator()
+        .into_root_schema_for::<Study>()
 }

@@ -74,7 +74,12 @@ pub fn load_study(path: &Path) -> Result<Plan, Report> {
         factors: study
             .factors
             .iter()
-            .map(|factor| (factor.name.clone(), factor.levels.iter().map(super::LevelConfig::label).collect()))
+            .map(|factor| {
+                (
+                    factor.name.clone(),
+                    factor.levels.iter().map(super::LevelConfig::label).collect(),
+                )
+            })
             .collect(),
         figures: std::iter::once(&study.figure).chain(&study.also).cloned().collect(),
         reference: settings.iter().position(|setting| setting.levels == study.reference),
@@ -156,7 +161,11 @@ impl Plan {
                 place: None,
             })
             .collect();
-        if diagnostics.is_empty() { Ok(self) } else { Err(Report { diagnostics }) }
+        if diagnostics.is_empty() {
+            Ok(self)
+        } else {
+            Err(Report { diagnostics })
+        }
     }
 
     /// Runs so many trials of each setting instead.
