@@ -36,7 +36,7 @@ Runs a robot swarm's protocol over a radio that loses and delays frames, often e
 what the protocol costs, when it finishes, and what breaks it.
 
 A scenario file holds one question. `desim scenario` answers it: a report on the terminal, tables, pictures and a \
-summary in a folder.";
+summary in a folder. A study file varies a scenario; `desim compare` says which of its settings is better, by how much, how sure.";
 
 const EXIT_STATUS: &str = "\
 Exit status:
@@ -76,7 +76,11 @@ pub enum Command {
     #[command(long_about = explain::LONG_ABOUT)]
     Explain(ExplainArguments),
     /// Print the JSON Schema of scenario files, for editors
-    Schema,
+    Schema {
+        /// That of study files instead
+        #[arg(long)]
+        study: bool,
+    },
 }
 
 /// Runs a command.
@@ -97,7 +101,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
             if well { Ok(()) } else { Err(Failure::Shown) }
         }
         Command::Explain(arguments) => explain::run(&arguments),
-        Command::Schema => Ok(schema::schema(&mut out)?),
+        Command::Schema { study } => Ok(schema::schema(study, &mut out)?),
     }
 }
 

@@ -227,6 +227,7 @@ fn simulate(
 }
 
 /// As many threads as asked for, or one for each processor.
+#[must_use]
 pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
     let processors = || thread::available_parallelism().ok();
     asked.or_else(processors).unwrap_or(NonZeroUsize::MIN)
@@ -247,6 +248,7 @@ fn leave(folder: &Folder, experiment: &Experiment, scenario: &Scenario) -> Resul
 }
 
 /// What a failed trial means to the user.
+#[must_use]
 pub fn failure(error: ExperimentError<TrialError>) -> Failure {
     match error {
         ExperimentError::Trial {

@@ -106,7 +106,7 @@ impl Pool<'_> {
         }
         missing.sort_by_key(|&(_, trial)| trial);
         run_trials(&missing, self.jobs, self.stop, run, |(experiment, part)| {
-            finished(experiment, &part)
+            finished(experiment, &part);
         })
     }
 }

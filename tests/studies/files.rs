@@ -102,7 +102,10 @@ fn paired_and_explicit_designs_have_the_combinations_that_they_say() {
         let reference = "    reference: [\"none\", \"slow\"],\n";
         let study = STUDY.replace(reference, &format!("    design: {design},\n"));
         let plan = read(&study).unwrap_or_else(|report| panic!("{report}"));
-        plan.settings.iter().map(|setting| setting.label()).collect::<Vec<_>>()
+        plan.settings
+            .iter()
+            .map(desim::scenario::Setting::label)
+            .collect::<Vec<_>>()
     };
     assert_eq!(of("Paired"), ["none, 0.1, Timeout(2.0)", "some, slow"]);
     let explicit = r#"Explicit([["some", "slow"], ["none", "slow"]])"#;

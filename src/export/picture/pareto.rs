@@ -202,7 +202,7 @@ impl Plane<'_> {
             .comparison
             .setting(&point.setting)
             .map_or(point.setting.as_str(), |setting| &setting.label);
-        document.append(text(at + Vec2::new(8.0, -7.0), 12.0, "start", TEXT, label));
+        document.append(text(at + Vec2::new(8.0, 15.0), 12.0, "start", TEXT, label));
     }
 }
 

@@ -88,7 +88,8 @@ impl Setting {
 
 /// Trials that tell something.
 fn telling(samples: &[Sample]) -> u64 {
-    samples.iter().filter(|sample| sample.part != [0.0; 2]).count() as u64
+    let tells = |sample: &&Sample| sample.part.iter().any(|part| part.abs() > 0.0);
+    samples.iter().filter(tells).count() as u64
 }
 
 /// The ratio of sums with its interval.

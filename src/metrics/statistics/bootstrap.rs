@@ -98,7 +98,7 @@ fn acceleration(all: &[Vec<usize>], statistic: &impl Fn(&[Vec<usize>]) -> f64) -
 fn percentile(sorted: &[f64], level: f64) -> Option<f64> {
     let rank = sorted.len().checked_sub(1)? as f64 * level;
     let (below, above) = (sorted[rank.floor() as usize], sorted[rank.ceil() as usize]);
-    Some(if below == above {
+    Some(if below.total_cmp(&above).is_eq() {
         below
     } else {
         below + (above - below) * rank.fract()

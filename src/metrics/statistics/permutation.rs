@@ -34,10 +34,11 @@ pub fn paired_permutation(a: &[Part], b: &[Part]) -> Option<f64> {
         return None;
     }
     // To swap equals changes nothing: each such pair would only double all counts.
-    let pairs = || a.iter().zip(b).filter(|(a, b)| a != b);
-    let equal = a.iter().zip(b).filter(|(a, b)| a == b);
-    let start = equal.fold([0.0; 2], |[x, y], (part, _)| [x + part[0], y + part[1]]);
-    let pairs: Vec<(Part, Part)> = pairs().map(|(a, b)| (*a, *b)).collect();
+    let all = a.iter().copied().zip(b.iter().copied());
+    let (equal, pairs): (Vec<_>, Vec<_>) = all.partition(|(a, b)| are_equal(*a, *b));
+    let start = equal
+        .iter()
+        .fold([0.0; 2], |[x, y], (part, _)| [x + part[0], y + part[1]]);
     let is_as_large = |swapped: &dyn Fn(usize) -> bool| {
         let difference = difference(start, &pairs, swapped);
         // Rounding must not make the same difference a smaller one; a difference without bounds counts as large.
@@ -57,6 +58,10 @@ pub fn paired_permutation(a: &[Part], b: &[Part]) -> Option<f64> {
         is_as_large(&|pair| words[pair / 64] >> (pair % 64) & 1 == 1)
     });
     Some((large.count() + 1) as f64 / f64::from(PERMUTATIONS + 1))
+}
+
+fn are_equal(a: Part, b: Part) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.total_cmp(&b).is_eq())
 }
 
 /// The difference between the ratios of sums after swapping pairs; both sums begin at `start`.

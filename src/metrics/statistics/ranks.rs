@@ -40,8 +40,7 @@ pub fn wilcoxon(differences: &[f64]) -> Option<f64> {
 /// sample is empty or all values are equal.
 #[must_use]
 pub fn mann_whitney(a: &[f64], b: &[f64]) -> Option<f64> {
-    let (n, m) = (a.len(), b.len());
-    if n == 0 || m == 0 {
+    if a.is_empty() || b.is_empty() {
         return None;
     }
     let mut pooled: Vec<(f64, bool)> = a.iter().map(|&value| (value, true)).collect();
@@ -54,10 +53,10 @@ pub fn mann_whitney(a: &[f64], b: &[f64]) -> Option<f64> {
         .filter(|(_, (_, is_a))| *is_a)
         .map(|(rank, _)| rank)
         .sum();
-    let (first, second) = (n as f64, m as f64);
+    let (first, second) = (a.len() as f64, b.len() as f64);
     let u = of_a - first * (first + 1.0) / 2.0;
-    if ties == 0.0 && n <= EXACT && m <= EXACT {
-        return Some(two_sided(&rank_sum_ways(n, m), u as usize));
+    if ties == 0.0 && a.len() <= EXACT && b.len() <= EXACT {
+        return Some(two_sided(&rank_sum_ways(a.len(), b.len()), u as usize));
     }
     let all = first + second;
     let variance = first * second / 12.0 * (all + 1.0 - ties / (all * (all - 1.0)));
@@ -93,7 +92,7 @@ impl Ranked {
             ranks: Vec::new(),
             ties: 0.0,
         };
-        for equal in sorted.chunk_by(|a, b| a == b) {
+        for equal in sorted.chunk_by(|a, b| a.total_cmp(b).is_eq()) {
             let (before, count) = (ranked.ranks.len() as f64, equal.len() as f64);
             ranked.ties += count.powi(3) - count;
             ranked

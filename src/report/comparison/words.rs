@@ -224,6 +224,7 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &Setting, r
     let at_reference = comparison
         .setting(reference)
         .map_or(String::new(), |setting| value(setting, figure));
+    let tally = format!("{tally}{}", at_worst(comparison, figure));
     let Some(pair) = pairs.iter().find(|pair| pair.setting == best.name) else {
         return format!(
             "No setting has a {} {name} than {there}, {at_reference}. {tally}",
@@ -250,6 +251,24 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &Setting, r
         found.push_str(&aside(comparison, pair, figure));
     }
     found
+}
+
+/// The setting that is furthest on the wrong side of the reference, if one is.
+fn at_worst(comparison: &Comparison, figure: &Figure) -> String {
+    let worse = comparison
+        .pairs_in(&figure.key)
+        .filter(|pair| pair.verdict == Verdict::Worse);
+    let size = |pair: &&Pair| pair.difference.value.unwrap_or_default().abs();
+    let worst = worse.max_by(|a, b| size(a).total_cmp(&size(b)));
+    let setting = worst.and_then(|pair| Some((pair, comparison.setting(&pair.setting)?)));
+    setting.map_or(String::new(), |(pair, setting)| {
+        format!(
+            " {} is worst: {}, {}.",
+            setting.label,
+            value(setting, figure),
+            change(pair, figure)
+        )
+    })
 }
 
 fn comparative(figure: &Figure) -> &'static str {
