@@ -8,7 +8,7 @@ use std::rc::Rc;
 use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
-use super::detector::{Detector, DetectorConfig};
+use super::detector::{Detector, DetectorConfig, Monitored};
 use super::gossip::GossipConfig;
 use super::{CodecError, Input, Output, Protocol, Topic, Wake};
 use crate::engine::{SimTime, Span};
@@ -37,6 +37,12 @@ impl Settings {
 pub struct Status {
     /// Statuses that the sender sent before this one.
     pub number: u32,
+}
+
+impl Monitored for Status {
+    fn is_status(&self) -> bool {
+        true
+    }
 }
 
 /// One robot's heartbeat and what it believes of its neighbours.
@@ -70,9 +76,7 @@ impl Protocol for Heartbeat {
     const SENSES_PROXIMITY: bool = false;
 
     fn step(&mut self, now: SimTime, input: &mut Input<Status>, output: &mut Output<Status>) {
-        for reception in &input.inbox {
-            self.detector.hear(reception, output);
-        }
+        self.detector.read(&input.inbox, output);
         match input.wake {
             Wake::Timer(_) => self.detector.expire(now, output),
             Wake::ControlStep => {

@@ -4,8 +4,6 @@
 //! is near; it answers with messages, a velocity, timers, and notes for the metrics. It never sees the radio, the
 //! queue or another robot.
 
-use std::rc::Rc;
-
 use rand_philox::Philox;
 use tokio_util::codec::{Decoder, Encoder};
 
@@ -17,7 +15,7 @@ pub mod control;
 pub mod detector;
 pub mod gossip;
 pub mod heartbeat;
-mod row_index;
+mod robot_table;
 
 /// Index of a topic in [`Protocol::TOPICS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,8 +31,8 @@ pub struct TimerId(pub u8);
 
 /// A protocol as one robot runs it.
 pub trait Protocol: Sized + 'static {
-    /// What robots say to each other, decoded.
-    type Message: std::fmt::Debug + 'static;
+    /// What robots say to each other, decoded. Each receiver gets a clone: keep what is large behind an `Rc`.
+    type Message: Clone + std::fmt::Debug + 'static;
     /// Makes payload bytes of messages and messages of payload bytes.
     type Codec: Encoder<Self::Message, Error = CodecError> + Decoder<Item = Self::Message, Error = CodecError> + Default;
     /// Names of the topics, by which traffic is accounted.
@@ -84,8 +82,9 @@ pub struct Input<M> {
     pub random: Philox,
 }
 
-/// A frame as it is shared by those that receive it: decoded once, for its bytes are the same at every receiver.
-#[derive(Debug)]
+/// A frame as its receivers get it: decoded once, for its bytes are the same at every receiver, and then copied into each
+/// inbox, so that reading an inbox is reading one stretch of memory.
+#[derive(Clone, Debug)]
 pub struct Frame<M> {
     /// Who sent it (the frame's header carries it).
     pub sender: ActorId,
@@ -93,8 +92,6 @@ pub struct Frame<M> {
     pub sequence: u32,
     /// When its transmission began.
     pub sent_at: SimTime,
-    /// Its topic.
-    pub topic: Topic,
     /// Length of its payload in bytes, header not included.
     pub payload_bytes: u32,
     /// What its payload says.
@@ -107,7 +104,7 @@ pub struct Reception<M> {
     /// When it arrived.
     pub at: SimTime,
     /// The frame.
-    pub frame: Rc<Frame<M>>,
+    pub frame: Frame<M>,
     /// Where the sender was when it sent, relative to this robot then, in the arena's axes, metres: situated
     /// communication (paper section 3.1), with the scenario's noise.
     pub displacement: [f32; 2],

@@ -1,7 +1,5 @@
 //! Between a robot that sends and the robots that hear: encode, offer to the medium, put arrivals into inboxes.
 
-use std::rc::Rc;
-
 use bytes::BytesMut;
 use tokio_util::codec::{Decoder, Encoder};
 
@@ -52,6 +50,8 @@ pub struct Air<P: Protocol> {
     reachable: Vec<Listener>,
     /// Since when each robot has been unable to hear; `NEVER` if it hears.
     deaf_since: Vec<SimTime>,
+    /// How many robots cannot hear: while all do, nobody is looked up in `deaf_since`.
+    deaf: usize,
     /// Receivers whose next arrival may have come forward, for scenarios that wake robots on reception.
     reached: Vec<ActorId>,
     tell_reached: bool,
@@ -70,6 +70,7 @@ impl<P: Protocol> Air<P> {
             hindrances: Vec::new(),
             reachable: Vec::new(),
             deaf_since: vec![SimTime::NEVER; robots],
+            deaf: 0,
             reached: Vec::new(),
             tell_reached: wake_on_reception,
         }
@@ -135,14 +136,13 @@ impl<P: Protocol> Air<P> {
             recorder.status_sent(now, sender, self.medium.upcoming(sender));
         }
         recorder.offered(topic, self.listeners.len() as u64);
-        let frame = Rc::new(Frame {
+        let frame = Frame {
             sender,
             sequence: self.medium.upcoming(sender),
             sent_at: now,
-            topic,
             payload_bytes,
             message,
-        });
+        };
         if !self.hindrances.is_empty() {
             self.hinder(&frame, faults, recorder);
         }
@@ -174,7 +174,7 @@ impl<P: Protocol> Air<P> {
             }
             self.inboxes[arrival.receiver.index()].push(Reception {
                 at: arrival.at,
-                frame: Rc::clone(&frame),
+                frame: frame.clone(),
                 displacement: arrival.displacement,
             });
         }
@@ -196,17 +196,28 @@ impl<P: Protocol> Air<P> {
     /// From `now` on `receiver` can hear or not. A copy is lost if its receiver cannot hear at the instant of its arrival;
     /// one that arrived before can still be read.
     pub fn set_hearing(&mut self, now: SimTime, receiver: ActorId, hears: bool, recorder: &mut Recorder) {
-        let since = self.deaf_since[receiver.index()];
+        if hears == self.hears(receiver) {
+            return;
+        }
         if hears {
             self.lose_unheard(now, receiver, recorder);
             self.deaf_since[receiver.index()] = SimTime::NEVER;
+            self.deaf -= 1;
         } else {
-            self.deaf_since[receiver.index()] = since.min(now);
+            self.deaf_since[receiver.index()] = now;
+            self.deaf += 1;
         }
+    }
+
+    fn hears(&self, receiver: ActorId) -> bool {
+        self.deaf == 0 || self.deaf_since[receiver.index()] == SimTime::NEVER
     }
 
     /// Loses what has arrived at `receiver` before `until` and could not be heard.
     fn lose_unheard(&mut self, until: SimTime, receiver: ActorId, recorder: &mut Recorder) {
+        if self.hears(receiver) {
+            return;
+        }
         let since = self.deaf_since[receiver.index()];
         if since < until {
             self.inboxes[receiver.index()].drop_arrivals(since, until, |reception| {
@@ -226,7 +237,7 @@ impl<P: Protocol> Air<P> {
         self.lose_unheard(now + INSTANT, receiver, recorder);
         self.inboxes[receiver.index()].take_arrived(now, arrived);
         for reception in arrived.iter() {
-            record_delivery(receiver, reception, recorder);
+            record_delivery::<P>(receiver, reception, recorder);
         }
         if recorder.is_tracing() {
             for Reception { frame, .. } in arrived.iter() {
@@ -244,9 +255,8 @@ impl<P: Protocol> Air<P> {
 
     /// The earliest arrival that still waits for `receiver`; none if it cannot hear.
     pub fn next_arrival(&self, receiver: ActorId) -> SimTime {
-        let hears = self.deaf_since[receiver.index()] == SimTime::NEVER;
         let next = || self.inboxes[receiver.index()].next_arrival();
-        hears.then(next).flatten().unwrap_or(SimTime::NEVER)
+        self.hears(receiver).then(next).flatten().unwrap_or(SimTime::NEVER)
     }
 
     /// Moves out the robots that frames were sent to since the last call.
@@ -262,9 +272,9 @@ impl<P: Protocol> Air<P> {
         for (receiver, inbox) in self.inboxes.iter().enumerate() {
             for reception in inbox.waiting() {
                 if reception.at <= end {
-                    record_delivery(ActorId(receiver as u32), reception, recorder);
+                    record_delivery::<P>(ActorId(receiver as u32), reception, recorder);
                 } else {
-                    recorder.in_flight(reception.frame.topic);
+                    recorder.in_flight(P::topic(&reception.frame.message));
                 }
             }
         }
@@ -272,17 +282,18 @@ impl<P: Protocol> Air<P> {
 }
 
 fn record_loss<P: Protocol>(receiver: ActorId, frame: &Frame<P::Message>, cause: LossCause, recorder: &mut Recorder) {
-    recorder.lost(receiver, frame.topic, cause, frame.payload_bytes);
-    if P::STATUS == Some(frame.topic) {
+    let topic = P::topic(&frame.message);
+    recorder.lost(receiver, topic, cause, frame.payload_bytes);
+    if P::STATUS == Some(topic) {
         recorder.status_lost(receiver, frame.sender, frame.sequence, cause);
     }
 }
 
-fn record_delivery<M>(receiver: ActorId, reception: &Reception<M>, recorder: &mut Recorder) {
+fn record_delivery<P: Protocol>(receiver: ActorId, reception: &Reception<P::Message>, recorder: &mut Recorder) {
     let frame = &reception.frame;
     recorder.delivered(
         receiver,
-        frame.topic,
+        P::topic(&frame.message),
         frame.payload_bytes,
         reception.at.since(frame.sent_at),
     );

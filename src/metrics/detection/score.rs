@@ -35,14 +35,15 @@ struct Tally {
 #[derive(Debug)]
 struct Pair {
     subject: ActorId,
-    /// Since when the pair is monitored, in one stretch and with one belief.
-    since: Option<SimTime>,
+    /// Since when the pair is monitored, in one stretch and with one belief; `NEVER` while it is not. There is a pair for
+    /// every link of the swarm, so it is kept small.
+    since: SimTime,
     /// The suspicion in force, by its place in the tally.
-    suspicion: Option<usize>,
+    suspicion: Option<u32>,
     /// Whether that is a mistake.
     mistaken: bool,
     /// The failure that is to be detected, by its place in the tally.
-    failure: Option<usize>,
+    failure: Option<u32>,
 }
 
 impl Scorer {
@@ -103,7 +104,7 @@ impl Scorer {
     fn watch(&mut self, now: SimTime, observer: ActorId, subject: ActorId) {
         let mut pair = Pair {
             subject,
-            since: None,
+            since: SimTime::NEVER,
             suspicion: None,
             mistaken: false,
             failure: None,
@@ -120,7 +121,7 @@ impl Scorer {
         let able = self.is_able(observer, subject);
         let pair = find(&mut self.pairs, observer, subject);
         pair.settle(at, &mut self.tally);
-        pair.suspicion = Some(self.tally.suspicions.len());
+        pair.suspicion = Some(self.tally.suspicions.len() as u32);
         pair.mistaken = suspicion.verdict() == Verdict::Mistake;
         self.tally.suspicions.push(suspicion);
         pair.resume(at, able);
@@ -131,7 +132,7 @@ impl Scorer {
         let pair = find(&mut self.pairs, observer, subject);
         pair.settle(now, &mut self.tally);
         if let Some(suspicion) = pair.suspicion.take() {
-            let suspicion = &mut self.tally.suspicions[suspicion];
+            let suspicion = &mut self.tally.suspicions[suspicion as usize];
             suspicion.until = Some(now);
             suspicion.duration = pair.mistaken.then(|| now.since(suspicion.at));
         }
@@ -164,13 +165,13 @@ impl Scorer {
     fn subject_changes(&mut self, now: SimTime, observer: ActorId, subject: ActorId) {
         let able = self.is_able(observer, subject);
         let pair = find(&mut self.pairs, observer, subject);
-        let was_monitored = pair.since.is_some();
+        let was_monitored = pair.since < SimTime::NEVER;
         pair.settle(now, &mut self.tally);
         pair.mistaken = false;
         if self.health[subject.index()].sends {
             pair.resolve(FailureOutcome::Recovered, &mut self.tally);
         } else if was_monitored {
-            pair.failure = Some(self.tally.failures.len());
+            pair.failure = Some(self.tally.failures.len() as u32);
             self.tally.failures.push(ObservedFailure {
                 subject,
                 observer,
@@ -231,25 +232,24 @@ fn find(pairs: &mut [Vec<Pair>], observer: ActorId, subject: ActorId) -> &mut Pa
 impl Pair {
     /// Counts the stretch that ends at `now`.
     fn settle(&mut self, now: SimTime, tally: &mut Tally) {
-        if let Some(since) = self.since.take() {
-            let nanos = u128::from(now.since(since).as_nanos());
-            tally.monitored_nanos += nanos;
-            tally.mistaken_nanos += if self.mistaken { nanos } else { 0 };
-        }
+        // A pair that is not monitored began to be so `NEVER`, no time ago.
+        let nanos = u128::from(now.since(std::mem::replace(&mut self.since, SimTime::NEVER)).as_nanos());
+        tally.monitored_nanos += nanos;
+        tally.mistaken_nanos += if self.mistaken { nanos } else { 0 };
     }
 
     /// Begins a stretch at `now`, if both robots are `able` and the belief says something of the detector's quality.
     fn resume(&mut self, now: SimTime, able: bool) {
         let tells = self.suspicion.is_none() || self.mistaken;
-        self.since = (able && tells).then_some(now);
+        self.since = if able && tells { now } else { SimTime::NEVER };
     }
 
     /// The failure ends: it was detected if the subject is suspected now, else the `outcome` is another.
     fn resolve(&mut self, outcome: FailureOutcome, tally: &mut Tally) {
         if let Some(failure) = self.failure.take() {
-            let failure = &mut tally.failures[failure];
+            let failure = &mut tally.failures[failure as usize];
             failure.outcome = self.suspicion.map_or(outcome, |suspicion| {
-                FailureOutcome::Detected(tally.suspicions[suspicion].at.since(failure.at))
+                FailureOutcome::Detected(tally.suspicions[suspicion as usize].at.since(failure.at))
             });
         }
     }

@@ -117,7 +117,7 @@ fn put_strand(kind: u8, strand: &Strand, bytes: &mut BytesMut) {
     bytes.put_u8(strand.chain);
     put_id(strand.next, wide, bytes);
     bytes.put_u8(strand.robots.len() as u8);
-    for &robot in &strand.robots {
+    for &robot in &*strand.robots {
         put_id(robot, wide, bytes);
     }
 }
@@ -265,7 +265,7 @@ impl Reader<'_> {
         Ok(Strand {
             chain,
             next,
-            robots: strand,
+            robots: strand.into(),
         })
     }
 }
@@ -287,7 +287,7 @@ mod tests {
         (any::<u8>(), id(), prop::collection::vec(id(), 0..256)).prop_map(|(chain, next, robots)| Strand {
             chain,
             next,
-            robots,
+            robots: robots.into(),
         })
     }
 

@@ -1,7 +1,10 @@
 //! What robots say: the paper's four topics (section 4.3).
 
+use std::rc::Rc;
+
 use crate::engine::ActorId;
 use crate::protocol;
+use crate::protocol::detector::Monitored;
 
 /// What a robot is to the backbone (paper section 4.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +43,12 @@ pub enum Message {
     ParentStrand(Strand),
     /// The robots from the worker to the sender.
     ChildStrand(Strand),
+}
+
+impl Monitored for Message {
+    fn is_status(&self) -> bool {
+        matches!(self, Self::Status(_))
+    }
 }
 
 /// What every robot says of itself.
@@ -200,6 +209,6 @@ pub struct Strand {
     /// The robot that the sender counts on as the next of the chain, by which the two verify that they are linked. The
     /// root, which is linked to whoever names it, names itself.
     pub next: ActorId,
-    /// The robots, the sender last.
-    pub robots: Vec<ActorId>,
+    /// The robots, the sender last: shared by all that hear of them.
+    pub robots: Rc<[ActorId]>,
 }

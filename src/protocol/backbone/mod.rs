@@ -42,7 +42,7 @@ use sidestep::Sidestep;
 use view::{Knowledge, View};
 use worker::Worker;
 
-use super::detector::{Detector, DetectorConfig};
+use super::detector::{self, Detector, DetectorConfig};
 use super::gossip::GossipConfig;
 use super::{Input, Note, Output, Protocol, Reception, Topic, Wake};
 use crate::engine::{ActorId, SimTime, Span};
@@ -290,12 +290,8 @@ impl Protocol for Backbone {
     }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
-        for reception in &input.inbox {
-            if matches!(reception.frame.message, Message::Status(_)) {
-                self.known.detector.hear(reception, output);
-            }
-        }
-        if input.wake == Wake::Timer(Detector::TIMER) {
+        self.known.detector.read(&input.inbox, output);
+        if input.wake == Wake::Timer(detector::TIMER) {
             // Believing is all that it does between control steps: what it read, and what follows from a suspicion, wait
             // for the next one.
             self.known.detector.expire(now, output);

@@ -143,7 +143,7 @@ impl Root {
         out.push(Message::ParentStrand(Strand {
             chain: 0,
             next: me,
-            robots: vec![me],
+            robots: [me].into(),
         }));
     }
 }

@@ -51,14 +51,13 @@ impl Bench {
         self.sequence += 1;
         let inbox = heard.iter().map(|(sender, x, message)| Reception {
             at: now,
-            frame: Rc::new(Frame {
+            frame: Frame {
                 sender: ActorId(*sender),
                 sequence: self.sequence,
                 sent_at: now,
-                topic: Backbone::topic(message),
                 payload_bytes: 4,
                 message: message.clone(),
-            }),
+            },
             displacement: [(x - self.x) as f32, 0.0],
         });
         let mut input = Input {

@@ -1,0 +1,174 @@
+//! When a robot believes that a neighbour is down: failure detectors behind one interface.
+//!
+//! A protocol shows its [`Detector`] every inbox that it reads, hands it the detector's [`TIMER`], and asks it whom it
+//! suspects. Which detector that is, only the scenario knows.
+
+mod config;
+mod timeout;
+mod watch;
+
+pub use config::DetectorConfig;
+
+use super::{Output, Reception, TimerId};
+use crate::engine::{ActorId, SimTime};
+use timeout::Timeout;
+use watch::Watch;
+
+/// The one timer that a detector sets: a protocol that runs one keeps it free.
+pub const TIMER: TimerId = TimerId(0);
+
+/// What a message is to a failure detector.
+pub trait Monitored {
+    /// Whether it is a status: a sign that its sender is alive, repeated as long as it is.
+    fn is_status(&self) -> bool;
+}
+
+/// One robot's failure detector: it notes whom the robot watches, suspects (at the exact instant) and trusts.
+#[derive(Debug)]
+pub enum Detector {
+    /// Suspects after a fixed silence.
+    Timeout(Watch<Timeout>),
+}
+
+impl Detector {
+    /// A detector that has heard nobody yet.
+    #[must_use]
+    pub fn new(config: &DetectorConfig) -> Self {
+        match config {
+            DetectorConfig::Timeout(_) => Self::Timeout(Watch::new(Timeout(config.longest_silence()))),
+        }
+    }
+
+    /// Takes in what has arrived, in order of arrival.
+    #[inline]
+    pub fn read<M: Monitored>(&mut self, inbox: &[Reception<M>], output: &mut Output<M>) {
+        let statuses = inbox.iter().filter(|reception| reception.frame.message.is_status());
+        match self {
+            Self::Timeout(watch) => statuses.for_each(|status| watch.hear(status, output)),
+        }
+    }
+
+    /// Its timer fired, and the robot has read all that arrived: suspects those whose time has run out.
+    pub fn expire<M>(&mut self, now: SimTime, output: &mut Output<M>) {
+        match self {
+            Self::Timeout(watch) => watch.expire(now, output),
+        }
+    }
+
+    /// Whether it believes that `robot` is down. Of a robot that it never heard it believes nothing.
+    #[must_use]
+    pub fn suspects(&self, robot: ActorId) -> bool {
+        self.suspected_since(robot) < SimTime::NEVER
+    }
+
+    /// Whether it came to believe so before `now`: what falls due at the very instant of a control step counts from the
+    /// next one on, so that a status of exactly that age is not yet too old.
+    #[must_use]
+    pub fn suspected_before(&self, now: SimTime, robot: ActorId) -> bool {
+        self.suspected_since(robot) < now
+    }
+
+    fn suspected_since(&self, robot: ActorId) -> SimTime {
+        match self {
+            Self::Timeout(watch) => watch.suspected_since(robot),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::{Frame, Note};
+    use crate::quantity::Positive;
+
+    const TIMEOUT_S: f64 = 2.5;
+
+    /// A message that is a status.
+    #[derive(Debug)]
+    struct Alive;
+
+    impl Monitored for Alive {
+        fn is_status(&self) -> bool {
+            true
+        }
+    }
+
+    fn at(seconds: f64) -> SimTime {
+        SimTime::from_secs(seconds)
+    }
+
+    fn detector() -> Detector {
+        Detector::new(&DetectorConfig::Timeout(Positive::new(TIMEOUT_S)))
+    }
+
+    fn status(sender: u32, sequence: u32, arrival_s: f64) -> [Reception<Alive>; 1] {
+        [Reception {
+            at: at(arrival_s),
+            frame: Frame {
+                sender: ActorId(sender),
+                sequence,
+                sent_at: SimTime::ZERO,
+                payload_bytes: 4,
+                message: Alive,
+            },
+            displacement: [0.0; 2],
+        }]
+    }
+
+    /// What the detector answers to `act`: its notes, and when it wants to be woken.
+    fn answer(
+        detector: &mut Detector,
+        act: impl FnOnce(&mut Detector, &mut Output<Alive>),
+    ) -> (Vec<Note>, Option<SimTime>) {
+        let mut output = Output::default();
+        act(detector, &mut output);
+        (output.notes, output.timers.last().and_then(|timer| timer.1))
+    }
+
+    fn suspicion(robot: u32, heard_s: f64, sequence: u32) -> Note {
+        Note::Suspects {
+            robot: ActorId(robot),
+            heard: at(heard_s),
+            sequence,
+        }
+    }
+
+    #[test]
+    fn a_robot_is_watched_from_its_first_status_and_suspected_exactly_a_timeout_after_its_last() {
+        let mut detector = detector();
+        let first = answer(&mut detector, |d, out| d.read(&status(3, 0, 1.0), out));
+        assert_eq!(first, (vec![Note::Watches(ActorId(3))], Some(at(3.5))));
+        let second = answer(&mut detector, |d, out| d.read(&status(3, 1, 1.75), out));
+        assert_eq!(second, (vec![], None), "a later arrival does not move the timer");
+        assert_eq!(
+            answer(&mut detector, |d, out| d.expire(at(3.5), out)),
+            (vec![], Some(at(4.25)))
+        );
+        assert!(!detector.suspects(ActorId(3)));
+        let expired = answer(&mut detector, |d, out| d.expire(at(4.25), out));
+        assert_eq!(expired, (vec![suspicion(3, 1.75, 1)], None));
+        assert!(detector.suspects(ActorId(3)) && !detector.suspects(ActorId(4)));
+        assert!(!detector.suspected_before(at(4.25), ActorId(3)) && detector.suspected_before(at(4.26), ActorId(3)));
+    }
+
+    #[test]
+    fn a_suspected_robot_is_trusted_at_its_next_status_and_watched_anew() {
+        let mut detector = detector();
+        answer(&mut detector, |d, out| d.read(&status(3, 0, 1.0), out));
+        answer(&mut detector, |d, out| d.expire(at(3.5), out));
+        let again = answer(&mut detector, |d, out| d.read(&status(3, 7, 5.0), out));
+        assert_eq!(again, (vec![Note::Trusts(ActorId(3))], Some(at(7.5))));
+        assert!(!detector.suspects(ActorId(3)));
+    }
+
+    #[test]
+    fn a_status_overtaken_on_the_way_is_a_sign_of_life_and_not_the_newest() {
+        let mut detector = detector();
+        for (sequence, arrival) in [(0, 1.0), (2, 1.2), (1, 1.3)] {
+            answer(&mut detector, |d, out| d.read(&status(3, sequence, arrival), out));
+        }
+        answer(&mut detector, |d, out| d.expire(at(3.5), out));
+        let expired = answer(&mut detector, |d, out| d.expire(at(3.8), out));
+        assert_eq!(expired, (vec![suspicion(3, 1.3, 2)], None));
+    }
+}
