@@ -61,8 +61,11 @@ impl<'a> Settings<'a> {
             }
             let folder = study.setting(&setting.name);
             if let Contents::Results(there) = folder.contents()? {
-                let differences = there.differences(&Manifest::new(&scenario));
-                if !differences.is_empty() || (there.finished && compared.is_none()) {
+                let mut differences = there.differences(&Manifest::new(&scenario));
+                if there.finished && compared.is_none() {
+                    differences.push("finished there, though the study is not".to_owned());
+                }
+                if !differences.is_empty() {
                     return Err(Failure::Input(format!(
                         "error: {} holds results that are not this study's:\n  {}\nChoose another folder with --out.",
                         folder.path().display(),

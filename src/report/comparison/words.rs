@@ -226,13 +226,15 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &Setting, r
         .map_or(String::new(), |setting| value(setting, figure));
     let tally = format!("{tally}{}", at_worst(comparison, figure));
     let Some(pair) = pairs.iter().find(|pair| pair.setting == best.name) else {
-        return format!(
-            "No setting has a {} {name} than {there}, {at_reference}. {tally}",
+        let nobody = format!(
+            "No setting has a {} {name} than {there}, {at_reference}.",
             comparative(figure)
         );
+        return format!("{nobody} {tally}{}", elsewhere(comparison, figure));
     };
     if pair.verdict != Verdict::Better {
-        return format!("No setting is detectably better than {there} in {name} ({at_reference}). {tally}");
+        let nobody = format!("No setting is detectably better than {there} in {name} ({at_reference}).");
+        return format!("{nobody} {tally}{}", elsewhere(comparison, figure));
     }
     let mut found = format!(
         "{} has the {} {name}: {}, {} than {there} (adjusted p {}). {tally}",
@@ -251,6 +253,31 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &Setting, r
         found.push_str(&aside(comparison, pair, figure));
     }
     found
+}
+
+/// What other figures gain in other settings, and what that costs in the figure that the study is about.
+fn elsewhere(comparison: &Comparison, primary: &Figure) -> String {
+    let gains = comparison.compared.iter().skip(1).filter_map(|key| {
+        let figure = comparison.figure(key)?;
+        let pairs = comparison.pairs_in(key).filter(|pair| pair.verdict == Verdict::Better);
+        let size = |pair: &&Pair| pair.difference.value.unwrap_or_default().abs();
+        let pair = pairs.max_by(|a, b| size(a).total_cmp(&size(b)))?;
+        let cost = comparison
+            .pairs_in(&primary.key)
+            .find(|other| other.setting == pair.setting)?;
+        let cost = match cost.verdict {
+            Verdict::NoDetectableDifference | Verdict::NotComparable => "no detectable difference".to_owned(),
+            Verdict::Better | Verdict::Worse => change(cost, primary),
+        };
+        let label = label(comparison, &pair.setting);
+        Some(format!(
+            " {label} is best in {}, {}, with {}: {cost}.",
+            figure.name,
+            change(pair, figure),
+            primary.name
+        ))
+    });
+    gains.collect()
 }
 
 /// The setting that is furthest on the wrong side of the reference, if one is.
