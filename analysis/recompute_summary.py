@@ -252,6 +252,8 @@ class Folder:
         low, high = (None if end is None else max(1.0 - end, 0.0) for end in reversed(wrong["ci95"]))
         right = estimate(None if wrong["value"] is None else 1.0 - wrong["value"], low, high, wrong["n"])
         outcomes = ("detected", "recovered", "observer_failed", "undetected")
+        # Probes are no cause where nobody probes.
+        causes += sorted(set(suspicions["cause"]) & {"unanswered"})
         assert set(suspicions["cause"]) <= set(causes) and set(failures["verdict"]) <= set(outcomes)
         return {
             "suspicions": {

@@ -322,6 +322,36 @@ fn the_mistake_of_statuses_rarer_than_the_timeout_bears() {
 }
 
 #[test]
+fn the_mistake_of_intervals_that_phi_accrual_assumes_too_short() {
+    insta::assert_snapshot!(refused(&[
+        "detector=PhiAccrual(dialect: Chitchat, initial_interval: Seconds(0.05))",
+        "gossip.status.interval=0.5"
+    ]));
+}
+
+#[test]
+fn the_mistake_of_statuses_that_come_too_late_to_count() {
+    insta::assert_snapshot!(refused(&["detector=NfdS(shift: 0.05)", "radio.latency=Constant(0.06)"]));
+}
+
+#[test]
+fn the_mistake_of_a_setting_of_another_dialect() {
+    insta::assert_snapshot!(refused(&[
+        "detector=PhiAccrual(dialect: Cassandra, acceptable_pause: Seconds(3.0))"
+    ]));
+}
+
+#[test]
+fn the_mistake_of_a_probe_that_nobody_can_answer_in_time() {
+    insta::assert_snapshot!(refused(&["detector=Swim(probe_interval: 0.3, probe_timeout: 0.1)"]));
+}
+
+#[test]
+fn the_mistake_of_no_time_for_answers_through_others() {
+    insta::assert_snapshot!(refused(&["detector=Swim(probe_interval: 0.9, probe_timeout: 0.4)"]));
+}
+
+#[test]
 fn the_mistake_of_an_override_with_an_unknown_field() {
     insta::assert_snapshot!(refused(&["radio.los=Bernoulli(0.3)"]));
 }

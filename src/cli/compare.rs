@@ -9,8 +9,8 @@ use clap::builder::RangedU64ValueParser;
 use serde_json::json;
 
 use super::failure::Failure;
-use super::scenario::Format;
 use super::settings::Settings;
+use super::shown::Format;
 use crate::export::{self, StudyFolder, StudyManifest};
 use crate::metrics::comparison::Comparison;
 use crate::report;

@@ -7,9 +7,11 @@ mod failure;
 mod interrupt;
 pub mod log;
 mod progress;
+pub mod report;
 pub mod scenario;
 pub mod schema;
 mod settings;
+pub mod shown;
 
 use std::io;
 use std::path::PathBuf;
@@ -20,6 +22,7 @@ use clap::{Parser, Subcommand};
 use compare::CompareArguments;
 use explain::ExplainArguments;
 pub use failure::Failure;
+use report::ReportArguments;
 use scenario::ScenarioArguments;
 
 /// What the user asks for.
@@ -36,7 +39,8 @@ Runs a robot swarm's protocol over a radio that loses and delays frames, often e
 what the protocol costs, when it finishes, and what breaks it.
 
 A scenario file holds one question. `desim scenario` answers it: a report on the terminal, tables, pictures and a \
-summary in a folder. A study file varies a scenario; `desim compare` says which of its settings is better, by how much, how sure.";
+summary in a folder. `desim report` makes a page of charts of that folder. A study file varies a scenario; `desim compare` says \
+which of its settings is better, by how much, how sure.";
 
 const EXIT_STATUS: &str = "\
 Exit status:
@@ -72,6 +76,9 @@ pub enum Command {
         #[arg(long)]
         resolved: bool,
     },
+    /// Report finished results again: on the terminal, and as a page of charts
+    #[command(long_about = report::LONG_ABOUT)]
+    Report(ReportArguments),
     /// Tell in words and times why a robot was suspected in a finished trial
     #[command(long_about = explain::LONG_ABOUT)]
     Explain(ExplainArguments),
@@ -100,6 +107,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
             let well = check::check(&files, &overrides, resolved, &mut out)?;
             if well { Ok(()) } else { Err(Failure::Shown) }
         }
+        Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Schema { study } => Ok(schema::schema(study, &mut out)?),
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::folder::{Contents, Folder, FolderError, failed, gone, json};
-use super::manifest::compare;
+use super::manifest::{Difference, compare};
 use super::picture;
 use crate::metrics::comparison::{Comparison, Trials};
 
@@ -55,7 +55,9 @@ impl StudyManifest {
         if self.version != asked.version {
             lines.push(format!("desim {} there, {} now", self.version, asked.version));
         }
-        compare("", &self.plan, &asked.plan, &mut lines);
+        let mut found = Vec::new();
+        compare("", &self.plan, &asked.plan, &mut found);
+        lines.extend(found.iter().map(Difference::line));
         if self.settings != asked.settings {
             let names = |settings: &[String]| settings.join(", ");
             lines.push(format!(

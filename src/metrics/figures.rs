@@ -11,7 +11,6 @@ use serde::{Deserialize, Serialize};
 
 use super::record::{TrafficRow, TrialRecord};
 use super::statistics::{Part, quantile};
-use super::summary::bandwidth::per_step;
 use super::summary::detection::{detection_times, durations, mistakes};
 use super::summary::faults::mending;
 use super::summary::frames::delivery_ratio;
@@ -213,7 +212,7 @@ impl Registry {
                 let key = format!("{prefix}.{direction}.{spread}");
                 let name = format!("{topic}{words}, {spread} robot");
                 self.add_plain(&key, &name, ("B/step", Better::Lower), move |record| {
-                    let mut robots = per_step(record, |row| u64::from(counts(row)) * bytes(row));
+                    let mut robots = record.bytes_per_step(|row| u64::from(counts(row)) * bytes(row));
                     robots.sort_by(f64::total_cmp);
                     let mean = || Some(robots.iter().sum::<f64>() / robots.len() as f64).filter(|_| !robots.is_empty());
                     q.map_or_else(mean, |q| quantile(&robots, q))

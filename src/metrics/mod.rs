@@ -12,6 +12,7 @@ mod mission;
 mod record;
 mod recorder;
 mod reports;
+mod series;
 pub mod statistics;
 pub mod summary;
 mod traffic;
@@ -21,8 +22,8 @@ pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget, Progress};
 pub use record::{
-    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotState, TopicFates, TrafficRow,
-    TrialRecord, Volume,
+    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotBytes, RobotState, SeriesEntry,
+    TopicFates, TrafficRow, TrialRecord, Volume,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
 pub use statistics::Estimate;

@@ -45,6 +45,8 @@ pub struct TrialRecord {
     pub healing: Vec<HealingEpisode>,
     /// Connectivity at each sample time.
     pub connectivity: Vec<ConnectivitySample>,
+    /// Traffic over time, in order of time.
+    pub series: Vec<SeriesEntry>,
     /// Robots at the end, in order of ids.
     pub robots: Vec<RobotState>,
     /// Positions at each sample time (metres, robot by robot), as f32: for pictures.
@@ -69,6 +71,18 @@ impl TrialRecord {
     pub fn connected_share(&self) -> Option<f64> {
         let connected = self.connectivity.iter().filter(|sample| sample.components == 1).count();
         (!self.connectivity.is_empty()).then(|| connected as f64 / self.connectivity.len() as f64)
+    }
+
+    /// Each robot's bytes a control step, of whatever `bytes` takes from its rows; a robot without traffic counts with 0.
+    #[must_use]
+    pub fn bytes_per_step(&self, bytes: impl Fn(&TrafficRow) -> u64) -> Vec<f64> {
+        let mut sums = vec![0; self.robots.len()];
+        for row in &self.traffic {
+            sums[row.robot.index()] += bytes(row);
+        }
+        // A run too short for a single control step lasts no longer than one.
+        let steps = self.steps.max(1) as f64;
+        sums.into_iter().map(|sum| sum as f64 / steps).collect()
     }
 
     /// The robots that failed at some time, each once, in order of ids.
@@ -309,6 +323,32 @@ pub struct ConnectivitySample {
     pub roles: Vec<u32>,
     /// Vertex-disjoint chains from each target's worker to the root, nl(t) of paper eq. 5, in order of targets.
     pub links: Vec<u32>,
+}
+
+/// Traffic from one sample to the next, headers included: on each topic, in order of topics, then on all together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeriesEntry {
+    /// Since when: a sample.
+    pub since: SimTime,
+    /// Until when: a later sample.
+    pub at: SimTime,
+    /// Sent, a frame counted once however many robots hear it.
+    pub sent: Vec<RobotBytes>,
+    /// Received.
+    pub received: Vec<RobotBytes>,
+}
+
+/// Bytes of robots, and how they spread over them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RobotBytes {
+    /// Of all robots together.
+    pub total: u64,
+    /// Of the robot with the fewest.
+    pub min: u64,
+    /// Median over robots.
+    pub median: f64,
+    /// Of the robot with the most.
+    pub max: u64,
 }
 
 /// A robot at the end of a trial.

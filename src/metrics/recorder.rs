@@ -15,6 +15,7 @@ use super::latency::LatencyHistogram;
 use super::mission::{Judge, Mission, Progress, Scene};
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
 use super::reports::Reports;
+use super::series::Series;
 use super::traffic::Traffic;
 
 /// The shape of a run, known before it starts.
@@ -77,6 +78,7 @@ pub struct Recorder {
     trace: Option<StatusTrace>,
     judge: Option<Judge>,
     connectivity: Vec<ConnectivitySample>,
+    series: Series,
     trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
     /// The last sample's graph and its λ₂, which stands as long as no edge changes.
     last_graph: Option<(Graph, f64)>,
@@ -104,6 +106,7 @@ impl Recorder {
                 .mission
                 .map(|mission| Judge::new(mission, hold, layout.control_period)),
             connectivity: Vec::new(),
+            series: Series::new(config.series_every),
             trajectories: Vec::new(),
             last_graph: None,
         }
@@ -207,7 +210,7 @@ impl Recorder {
         self.trace.is_some()
     }
 
-    /// Samples the graph of the live robots and where everyone is, `positions` in order of ids.
+    /// Samples the graph of the live robots, the traffic since the sample before, and where everyone is, `positions` in order of ids.
     pub fn sample(&mut self, now: SimTime, positions: &[Vec2]) {
         let live: Vec<Vec2> = (0..)
             .zip(positions)
@@ -228,6 +231,7 @@ impl Recorder {
                 .as_ref()
                 .map_or_else(Vec::new, |judge| judge.mission.links(scene)),
         });
+        self.series.sample(now, &self.traffic);
         self.trajectories
             .push((now, positions.iter().map(|p| [p.x as f32, p.y as f32]).collect()));
     }
@@ -293,6 +297,7 @@ impl Recorder {
             faults: self.failures.into_episodes(),
             healing: self.healing.into_episodes(),
             connectivity: self.connectivity,
+            series: self.series.into_entries(),
             robots: robots(self.reports, end.poses),
             trajectories: self.trajectories,
         }

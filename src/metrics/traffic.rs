@@ -29,6 +29,13 @@ impl Count {
     }
 }
 
+/// Bytes of a robot on a topic, headers included.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RobotTraffic {
+    pub(super) sent_bytes: u64,
+    pub(super) received_bytes: u64,
+}
+
 /// The traffic of a trial, dense in robots × roles × topics. What is sent, received and lost stands apart: receptions,
 /// by far the most, then share a table small enough to stay in the cache.
 #[derive(Debug)]
@@ -100,6 +107,25 @@ impl Traffic {
             self.topics
         );
         self.starts[robot.index()] as usize + usize::from(topic.0)
+    }
+
+    /// Number of topics.
+    pub(super) fn topics(&self) -> usize {
+        self.topics
+    }
+
+    /// Bytes of each robot on each topic, in whatever role, headers included: robot by robot, topic by topic.
+    pub(super) fn by_robot_and_topic(&self) -> Vec<RobotTraffic> {
+        let bytes = |count: &Count| count.volume(self.header_bytes).bytes();
+        let robots = self.starts.len();
+        let mut sums = vec![RobotTraffic::default(); robots * self.topics];
+        let per_robot = self.roles * self.topics;
+        for (cell, (sent, received)) in self.sent.iter().zip(&self.received).enumerate() {
+            let sum = &mut sums[cell / per_robot * self.topics + cell % self.topics];
+            sum.sent_bytes += bytes(sent);
+            sum.received_bytes += bytes(received);
+        }
+        sums
     }
 
     /// The cells that saw traffic, by robot, role, topic.

@@ -9,6 +9,7 @@ use tokio_util::codec::{Decoder, Encoder};
 
 use crate::engine::{ActorId, Process, SimTime};
 use crate::geometry::{Pose, Vec2};
+use detector::DetectorConfig;
 
 pub mod backbone;
 pub mod control;
@@ -35,15 +36,27 @@ pub trait Protocol: Sized + 'static {
     type Message: Clone + std::fmt::Debug + 'static;
     /// Makes payload bytes of messages and messages of payload bytes.
     type Codec: Encoder<Self::Message, Error = CodecError> + Decoder<Item = Self::Message, Error = CodecError> + Default;
-    /// Names of the topics, by which traffic is accounted.
+    /// Names of the topics, by which traffic is accounted; [`topics`](Self::topics) are those in use.
     const TOPICS: &'static [&'static str];
     /// Names of the roles, by which traffic is accounted. A robot starts in the first.
     const ROLES: &'static [&'static str];
     /// The topic that the robots' failure detector listens to, if they run one: its frames are followed one by one, so that
     /// a suspicion can be traced to what became of them.
     const STATUS: Option<Topic> = None;
+    /// The topic of what the robots' failure detector says, the last of them, if robots run one: it is in use where the
+    /// scenario's detector sends messages.
+    const PROBE: Option<Topic> = None;
     /// Whether robots read [`Input::proximity`]; if not, it stays empty and costs nothing.
     const SENSES_PROXIMITY: bool = true;
+
+    /// Names of the topics in use where robots run `detector`.
+    #[must_use]
+    fn topics(detector: &DetectorConfig) -> &'static [&'static str] {
+        match Self::PROBE {
+            Some(probe) if !detector.sends() => &Self::TOPICS[..usize::from(probe.0)],
+            Some(_) | None => Self::TOPICS,
+        }
+    }
 
     /// The topic that `message` belongs to: the first one, if the protocol does not say otherwise.
     fn topic(message: &Self::Message) -> Topic {
@@ -167,13 +180,24 @@ pub enum Note {
     Suspects {
         /// Which.
         robot: ActorId,
-        /// When that robot's last status arrived.
+        /// When that robot's last status arrived; with a detector that probes, its last frame.
         heard: SimTime,
         /// The newest of that robot's frames that arrived, by its number among them.
         sequence: u32,
+        /// What it goes by.
+        evidence: Evidence,
     },
     /// It believes so no longer.
     Trusts(ActorId),
+}
+
+/// What a suspicion goes by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// The robot was not heard for too long.
+    Silence,
+    /// The robot did not answer probes in time, or others say so.
+    Probes,
 }
 
 /// Payload bytes that are no message of the protocol.

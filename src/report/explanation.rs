@@ -20,6 +20,9 @@ pub struct Explanation {
     pub trial: u32,
     /// The robot.
     pub robot: u32,
+    /// What the robots' failure detector went by, in a sentence, where that needs words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rule: Option<String>,
     /// When it failed.
     pub outages: Vec<Outage>,
     /// When it was suspected, in order of time.
@@ -111,6 +114,7 @@ impl Explanation {
             scenario: scenario.to_owned(),
             trial: record.trial,
             robot: trace.robot.0,
+            rule: None,
             outages: record
                 .faults
                 .iter()
@@ -154,6 +158,9 @@ impl Explanation {
             "",
             &format!("Robot {robot} {times} in trial {trial} of {scenario}."),
         );
+        if let Some(rule) = &self.rule {
+            paragraph(text, "", rule);
+        }
         for outage in &self.outages {
             let until = outage
                 .until_s
@@ -208,7 +215,11 @@ impl Explanation {
         let words = format!(
             "The last status to arrive had done so at {heard_s:.3} s. In the {silence:.3} s since then, none arrived, though {sent}."
         );
-        let words = if statuses.is_empty() {
+        let words = if suspicion.cause == detection::Cause::Unanswered.name() {
+            format!(
+                "It went by probes, which were not answered in time, or by what others said of them. The last frame had arrived at {heard_s:.3} s; in the {silence:.3} s since then, {sent}."
+            )
+        } else if statuses.is_empty() {
             words.replace(", though", ":")
         } else {
             words

@@ -3,10 +3,12 @@
 mod comparison;
 mod explanation;
 mod failures;
+mod html;
 mod layout;
 mod number;
 mod terminal;
 
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
+pub use html::{PAGE_MARK, PageInput, page};
 pub use terminal::{Input, Speed, terminal};

@@ -11,7 +11,7 @@ use crate::protocol::heartbeat::Heartbeat;
 use crate::quantity::Positive;
 
 use super::path::FieldPath;
-use super::{ProtocolConfig, Scenario, limits};
+use super::{ProtocolConfig, Scenario, detector, limits};
 
 /// Something wrong with a scenario whose fields are each of the right form.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,6 +71,7 @@ pub fn problems(scenario: &Scenario) -> Vec<Problem> {
     if found.is_empty() {
         // Times and sizes are computed from counts and periods that hold.
         found.extend(times(scenario));
+        found.extend(detector::problems(scenario));
         found.extend(sizes(scenario));
     }
     found.extend(name(scenario));
@@ -118,21 +119,23 @@ fn sections(scenario: &Scenario) -> Vec<Problem> {
         motion,
         swarm,
         radio,
+        detector,
         ..
     } = scenario;
     let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
     let (protocol, roles) = match &scenario.protocol {
         ProtocolConfig::Backbone(backbone) => (backbone.problems(swarm.robots, radio.range.get()), Backbone::ROLES),
-        ProtocolConfig::Heartbeat => (Vec::new(), Heartbeat::ROLES),
+        ProtocolConfig::Heartbeat => (Vec::new(), <Heartbeat>::ROLES),
     };
     let faults = faults::problems(&scenario.faults, swarm.robots, roles);
     let around = ["swarm.robots", "arena.size", "motion.body_radius"];
-    let sections: [(_, _, &[&str]); 6] = [
+    let sections: [(_, _, &[&str]); 7] = [
         ("arena", arena.problems(), &[]),
         ("motion", motion.problems(), &[]),
         ("radio", radio.problems(), &[]),
         ("swarm.deploy", deploy, &around),
         ("protocol", protocol, &["swarm.robots", "radio.range"]),
+        ("detector", detector.problems(), &[]),
         ("faults", faults, &["swarm.robots", "protocol"]),
     ];
     let found = sections.into_iter().flat_map(|(section, problems, also)| {
@@ -189,16 +192,6 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         let message = format!("a control period of {period} s is no whole number of motion ticks of {tick} s");
         let help = "make `control.period` a multiple of `motion.tick`";
         found.push(Problem::new("control.period", message, help).with(&["motion.tick"]));
-    }
-    let status = Span::from_secs(period) * scenario.gossip.status.steps(Span::from_secs(period));
-    let status = status.as_secs();
-    let silence = scenario.detector.longest_silence().as_secs();
-    if status >= silence {
-        let message = format!(
-            "every pause between two statuses would be taken for a failure: they come every {status} s, and a silence of {silence} s is suspicious"
-        );
-        let help = "make `detector`'s timeout several times `gossip.status.interval`, which is rounded up to whole control periods";
-        found.push(Problem::new("detector", message, help).with(&["gossip.status.interval", "control.period"]));
     }
     if time_limit < period {
         let message = format!("the time limit of {time_limit} s ends before the first control period of {period} s");

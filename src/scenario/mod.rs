@@ -7,6 +7,7 @@
 //! own, `explain` and `shape` say what would be right, `report` shows it.
 
 mod checks;
+mod detector;
 mod document;
 mod explain;
 mod file;
@@ -36,13 +37,14 @@ pub use study::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::engine::Span;
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
 use crate::protocol::Protocol as _;
 use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
-use crate::protocol::detector::DetectorConfig;
+use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
 use crate::protocol::heartbeat::Heartbeat;
 use crate::quantity::Positive;
@@ -94,6 +96,18 @@ pub struct Scenario {
     pub metrics: MetricsConfig,
 }
 
+impl Scenario {
+    /// What its failure detector is told of the swarm.
+    #[must_use]
+    pub fn circumstances(&self) -> Circumstances {
+        let period = Span::from_secs(self.control.period.get());
+        Circumstances {
+            robots: self.swarm.robots as usize,
+            status_interval: period * self.gossip.status.steps(period),
+        }
+    }
+}
+
 fn one_trial() -> u32 {
     1
 }
@@ -129,7 +143,7 @@ impl ProtocolConfig {
     pub fn topics(&self) -> &'static [&'static str] {
         match self {
             Self::Backbone(_) => Backbone::TOPICS,
-            Self::Heartbeat => Heartbeat::TOPICS,
+            Self::Heartbeat => <Heartbeat>::TOPICS,
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::geometry::Pose;
 use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, PhaseConfig, WakeConfig};
-use crate::protocol::detector::DetectorConfig;
+use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::{Protocol, Robot};
 use crate::radio::{Medium, RadioConfig};
 
@@ -65,6 +65,8 @@ pub struct Setup {
     pub metrics: MetricsConfig,
     /// The failure detector that robots run: so far back are suspicions traced to what became of the statuses.
     pub detector: DetectorConfig,
+    /// The longest pause that a robot makes between two statuses; zero if it sends none.
+    pub status_interval: Span,
     /// A robot whose statuses are to be followed one by one, into [`TrialRecord::trace`].
     pub trace: Option<ActorId>,
     /// What counts as completion, if anything does.
@@ -145,16 +147,20 @@ impl Setup {
     }
 
     fn layout<P: Protocol>(&self, robots: usize) -> Layout {
+        let circumstances = Circumstances {
+            robots,
+            status_interval: self.status_interval,
+        };
         Layout {
             robots,
-            topics: P::TOPICS.len(),
+            topics: P::topics(&self.detector).len(),
             roles: P::ROLES.len(),
             header_bytes: self.radio.header_bytes,
             radio_range: self.radio.range.get(),
             control_period: Span::from_secs(self.control.period.get()),
             mission: self.mission.clone(),
             // A status may be that much older than the silence that it began, when its latency is long.
-            status_memory: self.detector.longest_silence() * 2,
+            status_memory: self.detector.longest_silence(circumstances) * 2,
             trace: self.trace,
         }
     }

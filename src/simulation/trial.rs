@@ -1,5 +1,6 @@
 //! From a scenario to the record of one of its trials.
 
+use std::convert::Infallible;
 use std::rc::Rc;
 
 use tokio_util::sync::CancellationToken;
@@ -10,6 +11,7 @@ use crate::engine::{ActorId, Span};
 use crate::metrics::{Mission, MissionTarget, TrialRecord};
 use crate::motion::{DeployError, deploy};
 use crate::protocol::backbone::{self, BackboneConfig};
+use crate::protocol::detector::Probe;
 use crate::protocol::heartbeat::{Heartbeat, Settings};
 use crate::scenario::{ProtocolConfig, Scenario};
 
@@ -79,12 +81,23 @@ fn run(
             setup.run(poses, robots, driver, stop)
         }
         ProtocolConfig::Heartbeat => {
-            let settings = Rc::new(Settings::new(&scenario.gossip, &scenario.detector, period));
-            let robots = poses.iter().map(|_| Heartbeat::new(Rc::clone(&settings))).collect();
-            setup.run(poses, robots, driver, stop)
+            let settings = Rc::new(Settings::new(&scenario.gossip, &scenario.detector, period, poses.len()));
+            if scenario.detector.sends() {
+                let robots = heartbeats::<Rc<Probe>>(swarm.robots, &settings);
+                setup.run(poses, robots, driver, stop)
+            } else {
+                let robots = heartbeats::<Infallible>(swarm.robots, &settings);
+                setup.run(poses, robots, driver, stop)
+            }
         }
     }?;
     Ok(record)
+}
+
+/// Robots whose messages carry what their detectors say by `P`.
+fn heartbeats<P>(robots: u32, settings: &Rc<Settings>) -> Vec<Heartbeat<P>> {
+    let ids = (0..robots).map(ActorId);
+    ids.map(|id| Heartbeat::new(id, Rc::clone(settings))).collect()
 }
 
 fn setup(scenario: &Scenario, trial: u32) -> Setup {
@@ -99,6 +112,7 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         faults: scenario.faults.clone(),
         metrics: scenario.metrics.clone(),
         detector: scenario.detector.clone(),
+        status_interval: scenario.circumstances().status_interval,
         trace: None,
         mission: None,
     }

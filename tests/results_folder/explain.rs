@@ -209,6 +209,24 @@ fn the_command_explains_finished_results_and_refuses_all_others() {
     }
 }
 
+/// A deaf robot goes on saying that it is alive, and answers no probe.
+#[test]
+fn a_suspicion_by_probes_is_told_as_one() {
+    let dir = tempdir().unwrap();
+    let text = text("faults: [Deaf(robots: [1], at: 3.0)]").replace("Timeout(0.35)", "Swim(suspicion_mult: 0.0)");
+    fs::write(dir.path().join("still.ron"), text).unwrap();
+    desim(dir.path(), &["scenario", "still.ron", "--quiet", "--out", "there"]).success();
+    let told = desim(dir.path(), &["explain", "there", "--trial", "0", "--robot", "1"]).success();
+    let told = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+    for words in [
+        "Robots ran SWIM: one was",
+        "mistake       unanswered",
+        "It went by probes, which",
+    ] {
+        assert!(told.contains(words), "{words:?} not in {told}");
+    }
+}
+
 #[test]
 fn a_manifest_whose_scenario_cannot_be_run_is_refused_by_its_field() {
     let dir = tempdir().unwrap();

@@ -10,8 +10,8 @@ use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
 use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
 use desim::metrics::{
-    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotState, TopicFates,
-    TrafficRow, TrialRecord, Volume,
+    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotBytes, RobotState,
+    SeriesEntry, TopicFates, TrafficRow, TrialRecord, Volume,
 };
 use desim::radio::LossCause;
 use desim::scenario::{Scenario, parse};
@@ -60,6 +60,7 @@ pub fn record(trial: u32) -> TrialRecord {
         detection: detection(trial),
         trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
+        series: (1..SAMPLES).map(|sample| series(sample, trial)).collect(),
         robots: (0..ROBOTS).map(|robot| state(robot, odd)).collect(),
         trajectories: (0..SAMPLES)
             .map(|sample| (SimTime::from_secs(sample as f64 * 5.0), places(sample)))
@@ -194,6 +195,22 @@ fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {
         components: if sample == 7 { 2 } else { 1 },
         roles: vec![2, 1, 4, 2],
         links: vec![1, u32::from(sample > 3)],
+    }
+}
+
+/// Traffic that dies down; the last entry is of all topics.
+fn series(sample: u64, trial: u32) -> SeriesEntry {
+    let bytes = |scale: u64| RobotBytes {
+        total: scale * (1000 + u64::from(trial)) / sample,
+        min: scale / 10,
+        median: scale as f64 * 1.5,
+        max: scale * 9,
+    };
+    SeriesEntry {
+        since: SimTime::from_secs((sample - 1) as f64 * 5.0),
+        at: SimTime::from_secs(sample as f64 * 5.0),
+        sent: [1, 2, 3, 4, 10].map(bytes).into(),
+        received: [10, 20, 30, 40, 100].map(bytes).into(),
     }
 }
 

@@ -4,4 +4,6 @@ mod command;
 mod explain;
 mod fixture;
 mod folder;
+mod page;
+mod read_back;
 mod report;

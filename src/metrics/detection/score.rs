@@ -2,11 +2,11 @@
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::Health;
-use crate::protocol::{Note, Reception};
+use crate::protocol::{Evidence, Note, Reception};
 use crate::radio::LossCause;
 
 use super::log::StatusLog;
-use super::record::{Cause, DetectionRecord, FailureOutcome, ObservedFailure, Suspicion, Verdict};
+use super::record::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion, Verdict};
 
 /// Scores the failure detectors of one run.
 #[derive(Debug)]
@@ -78,7 +78,12 @@ impl Scorer {
     pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, waiting: &[Reception<M>]) {
         match *note {
             Note::Watches(subject) => self.watch(now, observer, subject),
-            Note::Suspects { robot, heard, sequence } => {
+            Note::Suspects {
+                robot,
+                heard,
+                sequence,
+                evidence,
+            } => {
                 let missed = self.log.missed(now, [observer, robot], sequence, waiting);
                 let subject_down = !self.health[robot.index()].sends;
                 let is_failure = subject_down || self.silent(robot, heard, now) * 2 > now.since(heard);
@@ -90,7 +95,11 @@ impl Scorer {
                     sequence,
                     until: None,
                     subject_down,
-                    cause: if is_failure { Cause::Failure } else { missed.cause() },
+                    cause: if is_failure {
+                        Cause::Failure
+                    } else {
+                        cause(&missed, evidence)
+                    },
                     missed,
                     duration: None,
                 };
@@ -222,6 +231,17 @@ impl Scorer {
     }
 }
 
+/// What a suspicion of a robot that was well was due to. Who goes by probes does not go by statuses: these only tell whether
+/// the two could hear each other.
+fn cause(missed: &Missed, evidence: Evidence) -> Cause {
+    let cause = missed.cause();
+    let hindered = matches!(cause, Cause::OutOfRange | Cause::Lost(LossCause::ReceiverDown));
+    match evidence {
+        Evidence::Probes if !hindered => Cause::Unanswered,
+        Evidence::Probes | Evidence::Silence => cause,
+    }
+}
+
 /// The pair of `observer` and `subject`.
 fn find(pairs: &mut [Vec<Pair>], observer: ActorId, subject: ActorId) -> &mut Pair {
     let mut watched = pairs[observer.index()].iter_mut();
@@ -292,12 +312,17 @@ mod tests {
 
         /// A suspicion, the last status heard being number `heard` at its own second.
         fn suspect(&mut self, seconds: f64, heard: u32) {
+            self.suspect_for(Evidence::Silence, seconds, heard);
+        }
+
+        fn suspect_for(&mut self, evidence: Evidence, seconds: f64, heard: u32) {
             self.believe(
                 seconds,
                 &Note::Suspects {
                     robot: SUBJECT,
                     heard: at(f64::from(heard)),
                     sequence: heard,
+                    evidence,
                 },
             );
         }
@@ -424,6 +449,26 @@ mod tests {
         assert_eq!(
             (suspicion.verdict(), suspicion.cause),
             (Verdict::Mistake, Cause::Failure)
+        );
+    }
+
+    #[test]
+    fn a_suspicion_by_probes_is_due_to_them_unless_the_two_could_not_hear_each_other() {
+        let mut bench = Bench::new();
+        bench.lose(4..5);
+        bench.suspect_for(Evidence::Probes, 5.5, 3);
+        bench.trust(6.0);
+        bench.suspect_for(Evidence::Probes, 12.5, 6);
+        let suspicions = bench.outcomes().0.suspicions;
+        let judged = suspicions
+            .iter()
+            .map(|suspicion| (suspicion.cause, suspicion.verdict()));
+        assert_eq!(
+            judged.collect::<Vec<_>>(),
+            [
+                (Cause::Unanswered, Verdict::Mistake),
+                (Cause::OutOfRange, Verdict::OutOfRange)
+            ]
         );
     }
 }

@@ -146,10 +146,13 @@ impl Suspicions {
             let all = trials.iter().flat_map(|trial| &trial.suspicions);
             all.filter(|suspicion| wanted(suspicion)).count() as u64
         };
+        // Probes are no cause where nobody probes.
+        let mut causes = Cause::ALL.to_vec();
+        causes.retain(|cause| *cause != Cause::Unanswered || count(&|suspicion| suspicion.cause == *cause) > 0);
         Self {
             value: count(&|_| true),
-            by_cause: Named::of(Cause::ALL.map(Cause::name), |cause| {
-                count(&|suspicion| suspicion.cause == Cause::ALL[cause])
+            by_cause: Named::of(causes.iter().map(|cause| cause.name()), |cause| {
+                count(&|suspicion| suspicion.cause == causes[cause])
             }),
             by_verdict: Named::of(Verdict::ALL.map(Verdict::name), |verdict| {
                 count(&|suspicion| suspicion.verdict() == Verdict::ALL[verdict])

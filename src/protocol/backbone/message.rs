@@ -1,10 +1,10 @@
-//! What robots say: the paper's four topics (section 4.3).
+//! What robots say: the paper's four topics (section 4.3), and what their failure detectors say.
 
 use std::rc::Rc;
 
 use crate::engine::ActorId;
 use crate::protocol;
-use crate::protocol::detector::Monitored;
+use crate::protocol::detector::{Monitored, Probe, Sign};
 
 /// What a robot is to the backbone (paper section 4.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,11 +43,22 @@ pub enum Message {
     ParentStrand(Strand),
     /// The robots from the worker to the sender.
     ChildStrand(Strand),
+    /// What the failure detector says.
+    Probe(Rc<Probe>),
 }
 
 impl Monitored for Message {
-    fn is_status(&self) -> bool {
-        matches!(self, Self::Status(_))
+    #[inline]
+    fn sign(&self) -> Sign<'_> {
+        match self {
+            Self::Status(_) => Sign::Status,
+            Self::Probe(probe) => Sign::Probe(probe),
+            Self::Request(_) | Self::ParentStrand(_) | Self::ChildStrand(_) => Sign::Other,
+        }
+    }
+
+    fn probe(probe: Probe) -> Self {
+        Self::Probe(Rc::new(probe))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::engine::{ActorId, Span};
 use crate::geometry::{Pose, Vec2, direction};
-use crate::protocol::detector::DetectorConfig;
+use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
 
 use super::config::BackboneConfig;
@@ -101,6 +101,7 @@ pub struct Parameters {
     pub healing_patience: u64,
     pub silence_steps: u64,
     pub detector: DetectorConfig,
+    pub circumstances: Circumstances,
 }
 
 impl Mission {
@@ -199,7 +200,7 @@ impl Parameters {
     pub fn new(
         config: &BackboneConfig,
         gossip: &GossipConfig,
-        detector: &DetectorConfig,
+        (detector, circumstances): (&DetectorConfig, Circumstances),
         control_period: Span,
     ) -> Self {
         let steps = |seconds: f64| (seconds / control_period.as_secs()).ceil() as u64;
@@ -236,8 +237,9 @@ impl Parameters {
             strand_every,
             request_every,
             healing_patience: steps(config.healing.patience.get()),
-            silence_steps: steps(detector.longest_silence().as_secs()),
+            silence_steps: steps(detector.usual_silence(circumstances).as_secs()),
             detector: detector.clone(),
+            circumstances,
         }
     }
 }
@@ -263,7 +265,13 @@ mod tests {
         let parameters = Parameters::new(
             &config,
             &GossipConfig::default(),
-            &DetectorConfig::default(),
+            (
+                &DetectorConfig::default(),
+                Circumstances {
+                    robots: poses.len(),
+                    status_interval: Span::from_secs(0.1),
+                },
+            ),
             Span::from_secs(0.1),
         );
         let poses: Vec<Pose> = poses

@@ -42,7 +42,7 @@ use sidestep::Sidestep;
 use view::{Knowledge, View};
 use worker::Worker;
 
-use super::detector::{self, Detector, DetectorConfig};
+use super::detector::{self, Circumstances, Detector, DetectorConfig};
 use super::gossip::GossipConfig;
 use super::{Input, Note, Output, Protocol, Reception, Topic, Wake};
 use crate::engine::{ActorId, SimTime, Span};
@@ -86,7 +86,11 @@ pub fn swarm(
     control_period: Span,
     poses: &[Pose],
 ) -> Vec<Backbone> {
-    let parameters = Parameters::new(config, gossip, detector, control_period);
+    let circumstances = Circumstances {
+        robots: poses.len(),
+        status_interval: control_period * gossip.status.steps(control_period),
+    };
+    let parameters = Parameters::new(config, gossip, (detector, circumstances), control_period);
     let mission = Rc::new(Mission::new(config, parameters, poses));
     (0..poses.len() as u32)
         .map(|robot| Backbone::new(ActorId(robot), Rc::clone(&mission)))
@@ -108,7 +112,7 @@ impl Backbone {
                 step: 0,
                 position: Vec2::zeros(),
                 neighbours: Neighbours::default(),
-                detector: Detector::new(&mission.parameters.detector),
+                detector: Detector::new(&mission.parameters.detector, mission.parameters.circumstances, id),
                 mission,
                 order: Order::default(),
             },
@@ -145,6 +149,8 @@ impl Backbone {
                 Duty::Free | Duty::Worker(_) => {}
             },
             Message::Request(request) => self.hear_request(frame.sender, *request, out),
+            // The detector has read it.
+            Message::Probe(_) => {}
         }
     }
 
@@ -276,9 +282,10 @@ impl Backbone {
 impl Protocol for Backbone {
     type Message = Message;
     type Codec = BackboneCodec;
-    const TOPICS: &'static [&'static str] = &["status", "request", "parent strand", "child strand"];
+    const TOPICS: &'static [&'static str] = &["status", "request", "parent strand", "child strand", "probe"];
     const ROLES: &'static [&'static str] = &["free", "root", "networker", "worker"];
     const STATUS: Option<Topic> = Some(Topic(0));
+    const PROBE: Option<Topic> = Some(Topic(4));
 
     fn topic(message: &Message) -> Topic {
         Topic(match message {
@@ -286,15 +293,16 @@ impl Protocol for Backbone {
             Message::Request(_) => 1,
             Message::ParentStrand(_) => 2,
             Message::ChildStrand(_) => 3,
+            Message::Probe(_) => 4,
         })
     }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
-        self.known.detector.read(&input.inbox, output);
+        self.known.detector.read(now, &input.inbox, output);
         if input.wake == Wake::Timer(detector::TIMER) {
-            // Believing is all that it does between control steps: what it read, and what follows from a suspicion, wait
-            // for the next one.
-            self.known.detector.expire(now, output);
+            // Believing, and asking for news of others, is all that it does between control steps: what it read, and what
+            // follows from a suspicion, wait for the next one.
+            self.known.detector.expire(now, &mut input.random, output);
             self.unread.append(&mut input.inbox);
             return;
         }

@@ -1,14 +1,16 @@
 //! Detectors that listen: each status puts off the instant at which its sender is suspected, and a rule says to when.
 
-use super::TIMER;
+use super::{Monitored, Sign, TIMER};
 use crate::engine::{ActorId, SimTime};
 use crate::protocol::robot_table::{RobotRow, RobotTable};
-use crate::protocol::{Note, Output, Reception};
+use crate::protocol::{Evidence, Note, Output, Reception};
 
 /// When silence becomes suspicious.
 pub trait Rule {
     /// What it keeps of each robot beside the last arrival.
     type State;
+    /// Whether a status can bring the suspicion forward that an earlier one had put off.
+    const HASTENS: bool = false;
 
     /// Takes in the first status of a robot.
     fn first<M>(&self, status: &Reception<M>) -> Self::State;
@@ -97,9 +99,18 @@ impl<R: Rule> Watch<R> {
         }
     }
 
-    /// Takes in a status; they come in order of arrival.
+    /// Takes in the statuses in `inbox`, which are in order of arrival.
     #[inline]
-    pub fn hear<M>(&mut self, status: &Reception<M>, output: &mut Output<M>) {
+    pub fn read<M: Monitored>(&mut self, inbox: &[Reception<M>], output: &mut Output<M>) {
+        for reception in inbox {
+            if matches!(reception.frame.message.sign(), Sign::Status) {
+                self.hear(reception, output);
+            }
+        }
+    }
+
+    #[inline]
+    fn hear<M>(&mut self, status: &Reception<M>, output: &mut Output<M>) {
         let Some(row) = self.rows.get_mut(status.frame.sender) else {
             self.watch(status, output);
             return;
@@ -118,6 +129,9 @@ impl<R: Rule> Watch<R> {
                 output.notes.push(Note::Trusts(row.id));
                 self.arm(due, output);
             }
+        } else if R::HASTENS {
+            let due = self.rule.due(row);
+            self.arm(due, output);
         }
     }
 
@@ -148,6 +162,7 @@ impl<R: Rule> Watch<R> {
                     robot: row.id,
                     heard: row.heard(),
                     sequence: row.sequence,
+                    evidence: Evidence::Silence,
                 });
             } else {
                 next = next.min(due);

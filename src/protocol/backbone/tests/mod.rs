@@ -71,7 +71,7 @@ impl Bench {
             random: Philox::from_u64_seed(1),
         };
         let mut output = Output::default();
-        self.robot.known.detector.expire(now, &mut output);
+        self.robot.known.detector.expire(now, &mut input.random, &mut output);
         output.clear();
         self.robot.step(now, &mut input, &mut output);
         output
