@@ -424,7 +424,7 @@ fn check_refuses_overrides_that_are_none_before_it_reads_files() {
 #[test]
 fn the_schema_is_printed_as_json() {
     let mut out = Vec::new();
-    desim::cli::schema::schema(&mut out).unwrap();
+    desim::cli::schema::schema(false, &mut out).unwrap();
     let printed: serde_json::Value = serde_json::from_slice(&out).unwrap();
     assert_eq!(&printed, json_schema().as_value());
 }

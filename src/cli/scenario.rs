@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::interrupt;
 use super::progress::Progress;
 use super::shown::{Finished, Format};
-use crate::experiment::{Ending, Experiment, ExperimentError, Parts};
+use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
 use crate::export::{self, Contents, Folder, Manifest, Pictures};
 use crate::metrics::Summary;
 use crate::scenario::{Scenario, contents, parse, question};
@@ -193,11 +193,10 @@ fn simulate(
     let experiment = Experiment {
         trials: scenario.trials,
         seed: scenario.seed,
-        jobs: arguments
-            .jobs
-            .or_else(|| thread::available_parallelism().ok())
-            .unwrap_or(NonZeroUsize::MIN),
         parts: &parts,
+    };
+    let pool = Pool {
+        jobs: threads(arguments.jobs),
         stop: &stop,
     };
     let kept = experiment.kept();
@@ -205,8 +204,8 @@ fn simulate(
         arguments.remark(&format!("going on after {kept} of {} trials", scenario.trials));
     }
     let mut progress = Progress::start(scenario.trials, kept, arguments.quiet);
-    let run = |trial| run_trial(scenario, trial, arguments.driver.into(), &stop);
-    let ending = experiment.run(run, |part| progress.count(part));
+    let run = |_, trial| run_trial(scenario, trial, arguments.driver.into(), &stop);
+    let ending = pool.run(std::slice::from_ref(&experiment), run, |_, part| progress.count(part));
     drop(progress);
     match ending {
         Ok(Ending::Finished) => Ok(export::write(folder, parts, scenario, arguments.pictures.into())?),
@@ -216,6 +215,13 @@ fn simulate(
             Err(failure(error))
         }
     }
+}
+
+/// As many threads as asked for, or one for each processor.
+#[must_use]
+pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
+    let processors = || thread::available_parallelism().ok();
+    asked.or_else(processors).unwrap_or(NonZeroUsize::MIN)
 }
 
 /// Leaves an unfinished experiment: finished trials stay, and if there are none, nothing does. Says so.
@@ -232,7 +238,9 @@ fn leave(folder: &Folder, experiment: &Experiment, scenario: &Scenario) -> Resul
     ))
 }
 
-fn failure(error: ExperimentError<TrialError>) -> Failure {
+/// What a failed trial means to the user.
+#[must_use]
+pub fn failure(error: ExperimentError<TrialError>) -> Failure {
     match error {
         ExperimentError::Trial {
             source: TrialError::Deploy(error),

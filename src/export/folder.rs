@@ -223,7 +223,7 @@ pub fn json(value: &impl serde::Serialize) -> Vec<u8> {
 }
 
 /// An error to leave alone: what was to be deleted is not there.
-fn gone(result: io::Result<()>) -> io::Result<()> {
+pub fn gone(result: io::Result<()>) -> io::Result<()> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         other => other,

@@ -82,12 +82,7 @@ impl Manifest {
         }
         let fields = self.scenario_differences(asked).into_iter();
         let counts = |field: &Difference| self.finished || field.path != "trials";
-        lines.extend(fields.filter(counts).map(
-            |Difference {
-                 path,
-                 values: [there, now],
-             }| { format!("{path}: {there} there, {now} now") },
-        ));
+        lines.extend(fields.filter(counts).map(|difference| difference.line()));
         lines
     }
 
@@ -116,8 +111,17 @@ pub struct Difference {
     pub values: [String; 2],
 }
 
+impl Difference {
+    /// As a line for people.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let [there, now] = &self.values;
+        format!("{}: {there} there, {now} now", self.path)
+    }
+}
+
 /// Adds each value that differs between `one` and `other`.
-fn compare(path: &str, one: &Value, other: &Value, found: &mut Vec<Difference>) {
+pub fn compare(path: &str, one: &Value, other: &Value, found: &mut Vec<Difference>) {
     match (one, other) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
             for ((key, one), other) in a.iter().zip(b.values()) {

@@ -1,9 +1,11 @@
 //! What a run leaves behind: traffic, fates, connectivity, outcome, and the statistics over trials.
 
+pub mod comparison;
 mod config;
 mod connectivity;
 pub mod detection;
 mod faults;
+pub mod figures;
 mod healing;
 mod latency;
 mod mission;

@@ -1,5 +1,6 @@
 //! Finished results as text for people.
 
+mod comparison;
 mod explanation;
 mod failures;
 mod html;
@@ -10,6 +11,7 @@ mod spread;
 mod surprises;
 mod terminal;
 
+pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use html::{PAGE_MARK, PageInput, page};
 pub use preflight::preflight;

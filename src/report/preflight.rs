@@ -2,9 +2,8 @@
 
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
 
-use super::layout::{Page, WIDTH};
+use super::layout::{Page, RULED, WIDTH};
 use super::number::{figure, percent, seconds};
-use super::terminal::RULED;
 use crate::predict::{Holds, Prediction, Preflight};
 
 /// Columns of what is expected, by how much it may be off, and what it rests on.

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use comfy_table::{CellAlignment, ContentArrangement, ContentLineStyle, LineStyle, Table, TableStyle};
+use comfy_table::{CellAlignment, ContentArrangement, Table};
 
 use super::failures;
-use super::layout::{Page, WIDTH};
+use super::layout::{Page, RULED, WIDTH};
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use super::spread;
 use super::surprises;
@@ -150,11 +150,6 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
     page.entry("Gini of load", &format!("{load}; 0 where all carry the same"));
 }
 
-/// Columns apart, a rule under the header.
-pub(super) const RULED: TableStyle = TableStyle::new()
-    .header_lines(ContentLineStyle::none())
-    .header_separator(LineStyle::none().fill('─'))
-    .content_lines(ContentLineStyle::none());
 const HEADER: [&str; 9] = [
     "",
     "sent\nleast",

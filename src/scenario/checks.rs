@@ -29,7 +29,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    pub(super) fn new(path: &str, message: impl Into<String>, help: impl Into<String>) -> Self {
+    pub fn new(path: &str, message: impl Into<String>, help: impl Into<String>) -> Self {
         Self {
             path: FieldPath::of(path),
             message: message.into(),
@@ -59,7 +59,8 @@ impl Problem {
         std::iter::once(&self.path).chain(&self.also)
     }
 
-    pub(super) fn with(mut self, also: &[&str]) -> Self {
+    /// The same, depending on these fields too.
+    pub fn with(mut self, also: &[&str]) -> Self {
         self.also = also.iter().map(|path| FieldPath::of(path)).collect();
         self
     }

@@ -8,6 +8,7 @@
 
 mod checks;
 mod detector;
+mod document;
 mod explain;
 mod file;
 #[cfg(test)]
@@ -21,6 +22,7 @@ mod read;
 mod report;
 mod shape;
 mod source;
+mod study;
 mod token;
 mod tree;
 
@@ -28,6 +30,10 @@ pub use file::{contents, json_schema, load, question, to_ron};
 pub use overrides::Override;
 pub use read::parse;
 pub use report::{Diagnostic, Place, Report, Style};
+pub use study::{
+    DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
+    study_schema,
+};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,11 +42,13 @@ use crate::engine::Span;
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
-use crate::protocol::backbone::BackboneConfig;
+use crate::protocol::Protocol as _;
+use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
-use crate::protocol::rumor::RumorConfig;
+use crate::protocol::heartbeat::Heartbeat;
+use crate::protocol::rumor::{Rumor, RumorConfig};
 use crate::protocol::wander::WanderConfig;
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
@@ -135,4 +143,16 @@ pub enum ProtocolConfig {
     Heartbeat,
     /// Rumours that spread, until all robots know all of them.
     Rumor(RumorConfig),
+}
+
+impl ProtocolConfig {
+    /// What the protocol calls its topics.
+    #[must_use]
+    pub fn topics(&self) -> &'static [&'static str] {
+        match self {
+            Self::Backbone(_) => Backbone::TOPICS,
+            Self::Heartbeat => <Heartbeat>::TOPICS,
+            Self::Rumor(_) => Rumor::TOPICS,
+        }
+    }
 }

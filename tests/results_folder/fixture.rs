@@ -4,7 +4,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use desim::engine::{ActorId, SimTime, Span};
-use desim::experiment::{Ending, Experiment, ExperimentError, Parts};
+use desim::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
 use desim::export::{Folder, Manifest, Pictures, write};
 use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
@@ -290,11 +290,10 @@ pub fn run(
     let experiment = Experiment {
         trials: scenario.trials,
         seed: scenario.seed,
-        jobs,
         parts: &parts,
-        stop,
     };
-    let ending = experiment.run(run, |_| ())?;
+    let pool = Pool { jobs, stop };
+    let ending = pool.run(&[experiment], |_, trial| run(trial), |_, _| ())?;
     if ending == Ending::Finished {
         write(&folder, parts, scenario, Pictures::First).expect("the results can be written");
     }

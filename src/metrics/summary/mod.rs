@@ -2,10 +2,10 @@
 //!
 //! Everything here follows from the records alone and depends on no machine. Keys and their order are stable.
 
-mod bandwidth;
-mod detection;
-mod faults;
-mod frames;
+pub(super) mod bandwidth;
+pub(super) mod detection;
+pub(super) mod faults;
+pub(super) mod frames;
 mod quantity;
 mod spread;
 
@@ -24,10 +24,10 @@ use crate::engine::Span;
 use super::latency::LatencyHistogram;
 use super::record::{Outcome, TrialRecord};
 use super::statistics::{Estimate, Observation, mean, median, median_survival, proportion, share};
-use quantity::DIMENSIONLESS;
+pub(super) use quantity::DIMENSIONLESS;
 
-const STEPS: &str = "control steps";
-const SECONDS: &str = "s";
+pub(super) const STEPS: &str = "control steps";
+pub(super) const SECONDS: &str = "s";
 
 /// The figures of all trials of one scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -187,20 +187,22 @@ fn digest(records: &[TrialRecord]) -> String {
     format!("{:032x}", xxh3_128(&bytes))
 }
 
+/// Control steps until the mission of a trial was complete, or that it was watched in vain; `None` without a mission.
+pub(super) fn completion(record: &TrialRecord) -> Option<Observation> {
+    let (step, happened) = match record.outcome {
+        Outcome::Completed { step } => (step, true),
+        Outcome::Censored => (record.steps, false),
+        Outcome::NoMission => return None,
+    };
+    Some(Observation {
+        time: step as f64,
+        happened,
+    })
+}
+
 impl StepsToCompletion {
     fn of(records: &[TrialRecord]) -> Self {
-        let observe = |record: &TrialRecord| match record.outcome {
-            Outcome::Completed { step } => Some((step, true)),
-            Outcome::Censored => Some((record.steps, false)),
-            Outcome::NoMission => None,
-        };
-        let observed = records.iter().filter_map(observe);
-        let observations: Vec<Observation> = observed
-            .map(|(step, happened)| Observation {
-                time: step as f64,
-                happened,
-            })
-            .collect();
+        let observations: Vec<Observation> = records.iter().filter_map(completion).collect();
         Self {
             median: median_survival(&observations),
             unit: STEPS.into(),
