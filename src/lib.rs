@@ -31,8 +31,10 @@
 //!
 //! let places = [Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0)];
 //! let poses = places.map(|position| Pose { position, heading: 0.0 }).to_vec();
-//! let settings = Rc::new(Settings::new(&Default::default(), &Default::default(), Span::from_secs(0.1), setup.streams()));
-//! let robots = vec![Heartbeat::new(ActorId(0), settings.clone()), Heartbeat::new(ActorId(1), settings)];
+//! let step = Span::from_secs(0.1);
+//! let settings = Settings::new(&Default::default(), &Default::default(), step, poses.len(), setup.streams());
+//! let settings = Rc::new(settings);
+//! let robots: Vec<Heartbeat> = (0..2).map(|id| Heartbeat::new(ActorId(id), settings.clone())).collect();
 //!
 //! let record = setup.run(poses, robots, DriverKind::Actors, &Default::default())?;
 //!
