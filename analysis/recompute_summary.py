@@ -42,6 +42,24 @@ def mean(values):
     return estimate(value, value - half, value + half, n)
 
 
+def share(values):
+    """The mean of shares, with Wilson's interval at the effective number of trials."""
+    shares = [value for value in values if value is not None]
+    n, found = len(shares), mean(shares)
+    value = found["value"]
+    if n < 2:
+        return found
+    if value in (0.0, 1.0):
+        return wilson(n * int(value), n)
+    squared_error = total((share - value) ** 2 for share in shares) / (n - 1) / n
+    if squared_error == 0:
+        return estimate(value, value, value, n)
+    z, effective = student.ppf(0.975, n - 1), value * (1 - value) / squared_error
+    centre = (value + z * z / (2 * effective)) / (1 + z * z / effective)
+    half = z / (1 + z * z / effective) * math.sqrt(value * (1 - value) / effective + (z / effective) ** 2 / 4)
+    return estimate(value, centre - half, centre + half, n)
+
+
 def quantile(ordered, q):
     if not ordered:
         return None
@@ -337,7 +355,7 @@ class Folder:
             },
             "load_imbalance": {"tx": mean([gini(t) for t in sent]), "rx": mean([gini(t) for t in received])},
             "lambda2_min": {**median(least), "min": min((v for v in least if v is not None), default=None)},
-            "connected_share": mean(list(self.samples(lambda rows: (rows["components"] == 1).sum() / len(rows)))),
+            "connected_share": share(list(self.samples(lambda rows: (rows["components"] == 1).sum() / len(rows)))),
             "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]]),
             **self.failures(),
             **self.mending(),

@@ -74,6 +74,7 @@ pub mod faults;
 pub mod geometry;
 pub mod metrics;
 pub mod motion;
+pub mod predict;
 pub mod protocol;
 pub mod quantity;
 pub mod radio;

@@ -3,19 +3,34 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use crate::export;
+use crate::predict::Preflight;
+use crate::report;
 use crate::scenario::{Diagnostic, Override, Report, Scenario, Style, contents, parse, question, to_ron};
 
+/// What to say of a scenario that is well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Say {
+    /// A line that it is.
+    Well,
+    /// The whole scenario, with its defaults.
+    Resolved,
+    /// What closed forms expect of it.
+    Expected,
+    /// The same of all files as one JSON document, a list, and nothing else; faults go to standard error.
+    ExpectedJson,
+}
+
 /// Checks each of `files` with `overrides` worked in, and writes to `out`, standard output: for every file its faults,
-/// or a line that it is well; where `resolved` is asked for, the whole scenario with its defaults instead of that line.
-/// Answers whether all are well.
+/// or what to `say` of one that is well. Answers whether all are well.
 ///
 /// # Errors
 /// If `out` cannot be written to.
-pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut dyn Write) -> io::Result<bool> {
+pub fn check(files: &[PathBuf], overrides: &[String], say: Say, out: &mut dyn Write) -> io::Result<bool> {
     let parsed = match all(overrides) {
         Ok(parsed) => parsed,
         Err(report) => {
-            write!(out, "{}", report.render(style(&io::stdout())))?;
+            write_faults(&report, say, out)?;
             return Ok(false);
         }
     };
@@ -26,18 +41,38 @@ pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut 
             Ok((text, scenario)) => accepted.push((file, text, scenario)),
             Err(report) => {
                 well = false;
-                write!(out, "{}", report.render(style(&io::stdout())))?;
+                write_faults(&report, say, out)?;
             }
         }
     }
-    for (file, text, scenario) in accepted {
-        if resolved {
-            write_resolved(&text, &scenario, out)?;
-        } else {
-            write_line(file, &scenario, out)?;
+    if say == Say::ExpectedJson {
+        if well {
+            let expected: Vec<Preflight> = accepted.iter().map(|(.., scenario)| Preflight::of(scenario)).collect();
+            out.write_all(&export::json(&expected))?;
+        }
+        return Ok(well);
+    }
+    let colour = style(&io::stdout()).colour;
+    for (index, (file, text, scenario)) in accepted.iter().enumerate() {
+        match say {
+            Say::Well => write_line(file, scenario, out)?,
+            Say::Resolved => write_resolved(text, scenario, out)?,
+            Say::Expected | Say::ExpectedJson => {
+                let apart = if index > 0 { "\n" } else { "" };
+                let text = report::preflight(&Preflight::of(scenario), question(text).as_deref(), colour);
+                write!(out, "{apart}{text}")?;
+            }
         }
     }
     Ok(well)
+}
+
+fn write_faults(faults: &Report, say: Say, out: &mut dyn Write) -> io::Result<()> {
+    if say == Say::ExpectedJson {
+        let mut standard_error = io::stderr();
+        return write!(standard_error, "{}", faults.render(style(&standard_error)));
+    }
+    write!(out, "{}", faults.render(style(&io::stdout())))
 }
 
 /// Every override.

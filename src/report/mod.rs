@@ -5,9 +5,12 @@ mod failures;
 mod html;
 mod layout;
 mod number;
+mod preflight;
 mod spread;
+mod surprises;
 mod terminal;
 
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use html::{PAGE_MARK, PageInput, page};
+pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};

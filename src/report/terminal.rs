@@ -8,8 +8,10 @@ use super::failures;
 use super::layout::{Page, WIDTH};
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use super::spread;
+use super::surprises;
 use crate::metrics::Summary;
 use crate::metrics::summary::{Detection, Directions, Quantity, Spread, TopicBandwidth};
+use crate::predict::Surprise;
 
 /// What a report is made of.
 #[derive(Debug)]
@@ -20,6 +22,8 @@ pub struct Input<'a> {
     pub summary: &'a Summary,
     /// Length of a control step, seconds.
     pub control_period_s: f64,
+    /// Where the run is not as predicted.
+    pub surprises: &'a [Surprise],
     /// What the run took.
     pub speed: Speed,
     /// Where the results are.
@@ -56,6 +60,7 @@ pub fn terminal(input: &Input) -> String {
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
     detection(&mut page, &input.summary.detection);
+    surprises::section(&mut page, input.surprises);
     run(&mut page, input);
     page.text
 }
@@ -146,7 +151,7 @@ fn bandwidth(page: &mut Page, summary: &Summary) {
 }
 
 /// Columns apart, a rule under the header.
-const RULED: TableStyle = TableStyle::new()
+pub(super) const RULED: TableStyle = TableStyle::new()
     .header_lines(ContentLineStyle::none())
     .header_separator(LineStyle::none().fill('─'))
     .content_lines(ContentLineStyle::none());

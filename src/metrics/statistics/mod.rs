@@ -6,7 +6,7 @@ mod location;
 mod spread;
 mod survival;
 
-pub use location::{mean, median, proportion, ratio};
+pub use location::{mean, median, proportion, ratio, share};
 pub use spread::{gini, quantile};
 pub use survival::{Observation, Step, median_survival, survival_curve};
 

@@ -23,7 +23,7 @@ use crate::engine::Span;
 
 use super::latency::LatencyHistogram;
 use super::record::{Outcome, TrialRecord};
-use super::statistics::{Estimate, Observation, mean, median, median_survival, proportion};
+use super::statistics::{Estimate, Observation, mean, median, median_survival, proportion, share};
 use quantity::DIMENSIONLESS;
 
 const STEPS: &str = "control steps";
@@ -56,7 +56,7 @@ pub struct Summary {
     pub load_imbalance: LoadImbalance,
     /// The least λ₂ of a trial's samples.
     pub lambda2_min: LeastConnectivity,
-    /// Share of a trial's samples in which the swarm is in one piece: mean over trials.
+    /// Share of a trial's samples in which the swarm is in one piece: mean over trials, its interval within 0 and 1.
     pub connected_share: Measured,
     /// Robots that a mission took, those that ended in another role than the first: mean over trials.
     pub robots_used: Measured,
@@ -142,7 +142,7 @@ impl Summary {
             bandwidth: Bandwidth::of(topics, roles, records),
             load_imbalance: LoadImbalance::of(records),
             lambda2_min: LeastConnectivity::of(records),
-            connected_share: ratio(mean_over_trials(records, TrialRecord::connected_share)),
+            connected_share: ratio(connected_share(records)),
             robots_used: Measured {
                 estimate: mean_over_trials(records, |record| record.robots_used().map(|robots| robots as f64)),
                 unit: "robots".into(),
@@ -174,6 +174,11 @@ fn ratio(estimate: Estimate) -> Measured {
 /// The mean of a figure over the trials that have it.
 fn mean_over_trials(records: &[TrialRecord], figure: impl Fn(&TrialRecord) -> Option<f64>) -> Estimate {
     mean(&records.iter().filter_map(figure).collect::<Vec<f64>>())
+}
+
+fn connected_share(records: &[TrialRecord]) -> Estimate {
+    let shares: Vec<f64> = records.iter().filter_map(TrialRecord::connected_share).collect();
+    share(&shares)
 }
 
 /// XXH3-128 of the trials' digests, each as 16 bytes, least significant first.
