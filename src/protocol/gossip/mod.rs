@@ -9,7 +9,7 @@
 //! | `strand` | all of it | | |
 //! | `request` | all of it | | |
 //! | `relay` | interval, jitter, retransmit, of the root's orders | | all of it, of the rumours |
-//! | `piggyback` | yes | | yes |
+//! | `piggyback` | yes | where its detector sends messages too | yes |
 //!
 //! A setting that a protocol does not heed must be left at its default: a scenario that changes it is refused.
 
