@@ -8,7 +8,7 @@
 //! | replace | kind, to, child, sequence, chain, number of robots beyond |
 //! | accept, refuse | kind, to, sequence |
 //! | release | kind, to |
-//! | order | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
+//! | order, order with a reserve | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
 //! | strand | kind, chain, next, number of robots, robots |
 //!
 //! The first byte tells messages apart: 0 to 3 is a status, which begins with its role. A robot's id is one byte if all
@@ -30,6 +30,7 @@ const ORDER: u8 = 0x14;
 const ADOPT: u8 = 0x15;
 const WORK: u8 = 0x16;
 const REPLACE: u8 = 0x17;
+const ORDER_WITH_RESERVE: u8 = 0x18;
 const PARENT_STRAND: u8 = 0x20;
 const CHILD_STRAND: u8 = 0x21;
 const WIDE_IDS: u8 = 0x80;
@@ -98,8 +99,9 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
         }
         Request::Release { to } => put_addressed(RELEASE, to, bytes),
         Request::Order(order) => {
+            let kind = if order.reserve { ORDER_WITH_RESERVE } else { ORDER };
             let dismantled = order.dismantled.bytes();
-            bytes.put_slice(&[ORDER, order.epoch, dismantled.len() as u8]);
+            bytes.put_slice(&[kind, order.epoch, dismantled.len() as u8]);
             bytes.put_slice(dismantled);
         }
     }
@@ -181,9 +183,10 @@ impl Decoder for BackboneCodec {
                 sequence: reader.byte()?,
             }),
             RELEASE => Message::Request(Request::Release { to: reader.id(wide)? }),
-            ORDER => Message::Request(Request::Order(Order {
+            kind @ (ORDER | ORDER_WITH_RESERVE) => Message::Request(Request::Order(Order {
                 epoch: reader.byte()?,
                 dismantled: reader.targets()?,
+                reserve: kind == ORDER_WITH_RESERVE,
             })),
             PARENT_STRAND => Message::ParentStrand(reader.strand(wide)?),
             CHILD_STRAND => Message::ChildStrand(reader.strand(wide)?),
@@ -314,12 +317,12 @@ mod tests {
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
             id().prop_map(|to| Request::Release { to }),
-            (any::<u8>(), prop::collection::vec(0_u8..255, 0..4)).prop_map(|(epoch, targets)| {
+            (any::<u8>(), prop::collection::vec(0_u8..255, 0..4), any::<bool>()).prop_map(|(epoch, targets, reserve)| {
                 let mut dismantled = TargetSet::default();
                 for target in targets {
                     dismantled.insert(target);
                 }
-                Request::Order(Order { epoch, dismantled })
+                Request::Order(Order { epoch, dismantled, reserve })
             }),
         ];
         prop_oneof![

@@ -62,12 +62,41 @@ impl Chain {
         origin + self.forward * self.rest + self.left() * self.lane
     }
 
+    /// Lengths of the springs between the robots of the chain and of the one at the worker, metres, where the chain has
+    /// so many `relays`. With a reserve the last spring is shorter, by which the outermost relay is near to the target.
+    #[must_use]
+    pub fn springs(&self, relays: usize) -> Springs {
+        if relays <= self.relays {
+            return Springs {
+                between: self.rest,
+                last: self.rest,
+            };
+        }
+        let between = self.rest * (self.relays + 1) as f64 / (relays as f64 + LAST_SPRING);
+        Springs {
+            between,
+            last: LAST_SPRING * between,
+        }
+    }
+
     /// The left of the way from the root to the target, a unit vector.
     #[must_use]
     pub fn left(&self) -> Vec2 {
         Vec2::new(-self.forward.y, self.forward.x)
     }
 }
+
+/// Lengths of a chain's springs, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Springs {
+    /// Of those between the root and the outermost relay.
+    pub between: f64,
+    /// Of the one from the outermost relay to the worker, as the relay feels it.
+    pub last: f64,
+}
+
+/// Length of the last spring of a chain that has a reserve, as a share of its others.
+const LAST_SPRING: f64 = 0.5;
 
 /// Settings in metres, m/s, 1/s and whole control steps. See [`BackboneConfig`] for what they mean.
 #[derive(Clone, Debug)]
@@ -99,6 +128,7 @@ pub struct Parameters {
     pub strand_every: u64,
     pub request_every: u64,
     pub healing_patience: u64,
+    pub reserve: usize,
     pub silence_steps: u64,
     pub detector: DetectorConfig,
 }
@@ -236,6 +266,7 @@ impl Parameters {
             strand_every,
             request_every,
             healing_patience: steps(config.healing.patience.get()),
+            reserve: config.healing.reserve.into(),
             silence_steps: steps(detector.longest_silence().as_secs()),
             detector: detector.clone(),
         }

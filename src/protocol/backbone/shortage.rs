@@ -16,6 +16,8 @@ pub struct Shortage {
     short_for: u64,
     /// Control steps for which the robots would have done for all targets, without a break.
     ample_for: u64,
+    /// Control steps for which something else should be ordered about the reserve, without a break.
+    reserve_differs_for: u64,
     /// Control steps for which each target was held without a break.
     held_for: Vec<u64>,
     /// Whether each target was ever held for long enough.
@@ -30,6 +32,7 @@ impl Shortage {
             order: Order::default(),
             short_for: 0,
             ample_for: 0,
+            reserve_differs_for: 0,
             held_for: vec![0; targets],
             visited: vec![false; targets],
         }
@@ -40,6 +43,7 @@ impl Shortage {
         self.watch_visits(view, lines);
         let stock = Stock::of(view, lines, self.order);
         let patience = view.parameters().shortage_patience;
+        self.order_reserve(view, lines, &stock);
         let is_left_out = |target: &usize| !self.order.expands(*target as u8);
         count(&mut self.short_for, stock.lacking() > stock.to_come);
         count(&mut self.ample_for, stock.needed() <= stock.relays());
@@ -58,6 +62,24 @@ impl Shortage {
             self.advance(next, &stock);
         }
         self.order
+    }
+
+    /// From the first lost robot on chains get relays in reserve, while there is a free robot for each target besides
+    /// those that are needed; a change of that must last.
+    fn order_reserve(&mut self, view: &View<'_>, lines: &Lines, stock: &Stock) {
+        let parameters = view.parameters();
+        let can_spare = stock.to_come > stock.lacking() + stock.expanded().count();
+        let wants = parameters.reserve > 0 && lines.any_lost() && can_spare;
+        count(&mut self.reserve_differs_for, wants != self.order.reserve);
+        let patience = if wants { 0 } else { parameters.shortage_patience };
+        if self.reserve_differs_for > patience {
+            self.order = Order {
+                epoch: self.order.epoch.wrapping_add(1),
+                reserve: wants,
+                ..self.order
+            };
+            self.reserve_differs_for = 0;
+        }
     }
 
     fn expanded(&self) -> impl Iterator<Item = usize> {
@@ -115,6 +137,7 @@ impl Shortage {
         self.order = Order {
             epoch: self.order.epoch.wrapping_add(1),
             dismantled,
+            ..self.order
         };
         self.short_for = 0;
         self.ample_for = 0;
