@@ -8,7 +8,8 @@
 //! | replace | kind, to, child, sequence, chain, number of robots beyond |
 //! | accept, refuse | kind, to, sequence |
 //! | release | kind, to |
-//! | order, order with a reserve | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
+//! | order | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
+//! | order with a reserve | kind, relays in reserve, and on as an order |
 //! | strand | kind, chain, next, number of robots, robots |
 //!
 //! The first byte tells messages apart: 0 to 3 is a status, which begins with its role. A robot's id is one byte if all
@@ -99,9 +100,12 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
         }
         Request::Release { to } => put_addressed(RELEASE, to, bytes),
         Request::Order(order) => {
-            let kind = if order.reserve { ORDER_WITH_RESERVE } else { ORDER };
             let dismantled = order.dismantled.bytes();
-            bytes.put_slice(&[kind, order.epoch, dismantled.len() as u8]);
+            match order.reserve {
+                0 => bytes.put_u8(ORDER),
+                reserve => bytes.put_slice(&[ORDER_WITH_RESERVE, reserve]),
+            }
+            bytes.put_slice(&[order.epoch, dismantled.len() as u8]);
             bytes.put_slice(dismantled);
         }
     }
@@ -184,9 +188,9 @@ impl Decoder for BackboneCodec {
             }),
             RELEASE => Message::Request(Request::Release { to: reader.id(wide)? }),
             kind @ (ORDER | ORDER_WITH_RESERVE) => Message::Request(Request::Order(Order {
+                reserve: if kind == ORDER { 0 } else { reader.byte()? },
                 epoch: reader.byte()?,
                 dismantled: reader.targets()?,
-                reserve: kind == ORDER_WITH_RESERVE,
             })),
             PARENT_STRAND => Message::ParentStrand(reader.strand(wide)?),
             CHILD_STRAND => Message::ChildStrand(reader.strand(wide)?),
@@ -317,7 +321,7 @@ mod tests {
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
             id().prop_map(|to| Request::Release { to }),
-            (any::<u8>(), prop::collection::vec(0_u8..255, 0..4), any::<bool>()).prop_map(|(epoch, targets, reserve)| {
+            (any::<u8>(), prop::collection::vec(0_u8..255, 0..4), any::<u8>()).prop_map(|(epoch, targets, reserve)| {
                 let mut dismantled = TargetSet::default();
                 for target in targets {
                     dismantled.insert(target);

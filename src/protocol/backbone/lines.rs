@@ -59,7 +59,8 @@ impl Lines {
             if !line.cut && end_is_silent {
                 line.robots.pop();
                 line.cut = true;
-                self.any_lost = true;
+                // Before that one who was not heard may just not have been heard yet.
+                self.any_lost |= view.step > view.parameters().silence_steps;
             }
             if view.step - line.heard > view.parameters().healing_patience {
                 line.robots.clear();

@@ -128,7 +128,7 @@ pub struct Parameters {
     pub strand_every: u64,
     pub request_every: u64,
     pub healing_patience: u64,
-    pub reserve: usize,
+    pub reserve: u8,
     pub silence_steps: u64,
     pub detector: DetectorConfig,
 }
@@ -266,7 +266,7 @@ impl Parameters {
             strand_every,
             request_every,
             healing_patience: steps(config.healing.patience.get()),
-            reserve: config.healing.reserve.into(),
+            reserve: config.healing.reserve,
             silence_steps: steps(detector.longest_silence().as_secs()),
             detector: detector.clone(),
         }

@@ -16,8 +16,8 @@ pub struct Shortage {
     short_for: u64,
     /// Control steps for which the robots would have done for all targets, without a break.
     ample_for: u64,
-    /// Control steps for which something else should be ordered about the reserve, without a break.
-    reserve_differs_for: u64,
+    /// Control steps for which the robots were too few for the reserve that is ordered, without a break.
+    reserve_short_for: u64,
     /// Control steps for which each target was held without a break.
     held_for: Vec<u64>,
     /// Whether each target was ever held for long enough.
@@ -32,7 +32,7 @@ impl Shortage {
             order: Order::default(),
             short_for: 0,
             ample_for: 0,
-            reserve_differs_for: 0,
+            reserve_short_for: 0,
             held_for: vec![0; targets],
             visited: vec![false; targets],
         }
@@ -64,21 +64,20 @@ impl Shortage {
         self.order
     }
 
-    /// From the first lost robot on chains get relays in reserve, while there is a free robot for each target besides
-    /// those that are needed; a change of that must last.
+    /// From the first lost robot on chains get relays in reserve, as many as the robots are enough for; fewer once they
+    /// were not enough for long.
     fn order_reserve(&mut self, view: &View<'_>, lines: &Lines, stock: &Stock) {
         let parameters = view.parameters();
-        let can_spare = stock.to_come > stock.lacking() + stock.expanded().count();
-        let wants = parameters.reserve > 0 && lines.any_lost() && can_spare;
-        count(&mut self.reserve_differs_for, wants != self.order.reserve);
-        let patience = if wants { 0 } else { parameters.shortage_patience };
-        if self.reserve_differs_for > patience {
+        let most = if lines.any_lost() { parameters.reserve } else { 0 };
+        let affordable = (0..=most).rev().find(|&reserve| stock.affords(reserve)).unwrap_or(0);
+        count(&mut self.reserve_short_for, affordable < self.order.reserve);
+        if affordable > self.order.reserve || self.reserve_short_for > parameters.shortage_patience {
             self.order = Order {
                 epoch: self.order.epoch.wrapping_add(1),
-                reserve: wants,
+                reserve: affordable,
                 ..self.order
             };
-            self.reserve_differs_for = 0;
+            self.reserve_short_for = 0;
         }
     }
 
@@ -162,6 +161,7 @@ struct Relays {
     has: usize,
     needs: usize,
     lacks: usize,
+    chains: usize,
     is_expanded: bool,
 }
 
@@ -177,6 +177,7 @@ impl Stock {
                 let has = lines.relays(chain);
                 let needs = view.mission.chain(chain).relays;
                 relays.has += has;
+                relays.chains += 1;
                 relays.needs += needs;
                 relays.lacks += needs.saturating_sub(has);
             }
@@ -202,6 +203,16 @@ impl Stock {
     /// Relays that the expanded targets lack.
     fn lacking(&self) -> usize {
         self.expanded().map(|target| self.targets[target].lacks).sum()
+    }
+
+    /// Whether each chain of the expanded targets can have `reserve` relays more than it needs, and a robot for each
+    /// target is left.
+    fn affords(&self, reserve: u8) -> bool {
+        let of_target = |target| {
+            let relays: &Relays = &self.targets[target];
+            relays.needs + relays.chains * usize::from(reserve) + 1
+        };
+        self.expanded().map(of_target).sum::<usize>() <= self.relays()
     }
 
     /// Relays that all targets need.

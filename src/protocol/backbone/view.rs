@@ -109,8 +109,7 @@ impl<'a> View<'a> {
     /// Relays that chain number `chain` is to have: the fewest that will do, and those in reserve.
     #[must_use]
     pub fn relays_wanted(&self, chain: u8) -> usize {
-        let reserve = if self.order.reserve { self.parameters().reserve } else { 0 };
-        self.mission.chain(chain).relays + reserve
+        self.mission.chain(chain).relays + usize::from(self.order.reserve)
     }
 
     /// The worker of target number `target`, if it was heard of late.
