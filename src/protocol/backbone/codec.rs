@@ -326,7 +326,11 @@ mod tests {
                 for target in targets {
                     dismantled.insert(target);
                 }
-                Request::Order(Order { epoch, dismantled, reserve })
+                Request::Order(Order {
+                    epoch,
+                    dismantled,
+                    reserve,
+                })
             }),
         ];
         prop_oneof![
@@ -388,6 +392,21 @@ mod tests {
         };
         assert_eq!(&encoded(strand(&[255, 1]))[..], [0x21, 3, 9, 2, 255, 1]);
         assert_eq!(&encoded(strand(&[256, 1]))[..], [0xa1, 3, 0, 9, 2, 1, 0, 0, 1]);
+    }
+
+    #[test]
+    fn an_order_grows_by_a_byte_only_where_there_is_a_reserve() {
+        let order = |reserve| {
+            let mut dismantled = TargetSet::default();
+            dismantled.insert(1);
+            Message::Request(Request::Order(Order {
+                epoch: 7,
+                dismantled,
+                reserve,
+            }))
+        };
+        assert_eq!(&encoded(order(0))[..], [0x14, 7, 1, 2]);
+        assert_eq!(&encoded(order(2))[..], [0x18, 2, 7, 1, 2]);
     }
 
     #[test]

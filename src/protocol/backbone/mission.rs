@@ -348,6 +348,22 @@ mod tests {
     }
 
     #[test]
+    fn with_a_reserve_the_springs_still_add_up_to_the_same_and_the_last_is_half_as_long() {
+        let config: BackboneConfig = ron::from_str("(targets: Ring(count: 1, radius: 4.5))").unwrap();
+        let chain = parallel_chains(&config, 0, Vec2::new(4.5, 0.0), 1).next().unwrap();
+        for relays in [3, 4] {
+            let springs = chain.springs(relays);
+            let whole = relays as f64 * springs.between + springs.last;
+            assert!((whole - 3.0 * chain.rest).abs() < 1e-12);
+            assert!((springs.last - 0.5 * springs.between).abs() < 1e-12);
+        }
+        for relays in [1, 2] {
+            let springs = chain.springs(relays);
+            assert_eq!((springs.between, springs.last), (chain.rest, chain.rest));
+        }
+    }
+
+    #[test]
     fn springs_are_shorter_than_the_even_spacing_so_that_a_finished_chain_is_taut() {
         for distance in [2.0, 3.2, 4.5, 6.4] {
             let config: BackboneConfig =

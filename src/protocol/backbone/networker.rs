@@ -235,7 +235,8 @@ impl Networker {
         let chain = view.mission.chain(self.slot.chain);
         let relays = self.relays_outwards();
         self.slot.is_at_root(view)
-            && (relays < chain.relays && self.need(view) || relays >= chain.relays && relays < view.relays_wanted(self.slot.chain))
+            && (relays < chain.relays && self.need(view)
+                || relays >= chain.relays && relays < view.relays_wanted(self.slot.chain))
             && view.expands(self.slot.chain)
             && self.slot.is_out_enough(view)
     }

@@ -1,5 +1,13 @@
 //! Too few robots (paper algorithm 3): the root has the chains with the fewest robots dismantled, so that the others can
 //! be completed, and when those have been held, has the targets left out visited in their stead.
+//!
+//! The paper says it in two ways. Its algorithm and its section on the root have the chain with the fewest robots
+//! dismantled whenever too few are predicted, and the others expanded; its conclusions speak of "constructing a single full
+//! chain, and visiting one target at a time". This is the algorithm, asked again until the others can be completed. Where
+//! robots do for one target alone it comes to what the conclusions say; where they do for more, several targets are held
+//! at once, and none is visited later for it.
+//!
+//! The root also orders the reserve (ours): relays beyond the fewest, from the first lost robot on.
 
 use std::cmp::Reverse;
 

@@ -129,7 +129,10 @@ impl<'a> View<'a> {
         let is_nearer = |known: &&Neighbour| {
             known.status.role == Role::Networker
                 && plan.chains.contains(&known.status.chain)
-                && distance(known.position).total_cmp(&own).then(known.id.cmp(&self.id)).is_lt()
+                && distance(known.position)
+                    .total_cmp(&own)
+                    .then(known.id.cmp(&self.id))
+                    .is_lt()
         };
         self.neighbours.iter().filter(is_nearer).count()
     }

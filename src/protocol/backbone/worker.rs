@@ -144,7 +144,11 @@ impl Worker {
             };
             let chain = view.mission.chain(slot.chain);
             // A relay in reserve comes close and does not push.
-            let push = if slot.relays() > chain.relays { 0.0 } else { parameters.push_limit };
+            let push = if slot.relays() > chain.relays {
+                0.0
+            } else {
+                parameters.push_limit
+            };
             let spring = forces::spring(way, chain.rest, parameters.spring_gain, push);
             pull.springs += spring;
             pull.farthest = pull.farthest.max(way.norm());
