@@ -132,6 +132,31 @@ fn targets_at_any_distance_get_as_many_relays_as_they_need() {
     }
 }
 
+/// Whether a robot is at target number `target` of four.
+fn is_visited(target: usize, places: &[[f32; 2]]) -> bool {
+    let (x, y) = [(4.5, 0.0), (0.0, 4.5), (-4.5, 0.0), (0.0, -4.5)][target];
+    let is_there = |place: &[f32; 2]| (f64::from(place[0]) - x).hypot(f64::from(place[1]) - y) <= 0.3;
+    places.iter().any(is_there)
+}
+
+#[test]
+fn robots_that_do_for_one_target_alone_build_a_single_full_chain_and_visit_one_target_at_a_time() {
+    // A root, four workers and the four relays of one target.
+    let swarm = "swarm=(robots: 9, deploy: Cluster(radius: 0.5))";
+    let record = run("paper/completion_40x2.ron", &[swarm, "time_limit=1500.0"], 0);
+    let mut held = Vec::new();
+    for (sample, (at, places)) in record.connectivity.iter().zip(&record.trajectories) {
+        assert_eq!(sample.at, *at);
+        let is_held = |target: &usize| sample.links[*target] == 2 && is_visited(*target, places);
+        let now: Vec<usize> = (0..4).filter(is_held).collect();
+        assert!(now.len() <= 1, "{now:?} at {} s", at.as_secs());
+        held.extend(now);
+    }
+    held.sort_unstable();
+    held.dedup();
+    assert_eq!(held, [0, 1, 2, 3]);
+}
+
 #[test]
 fn too_few_robots_for_all_targets_visit_one_after_another() {
     // 1 + 4 + 4·2·2 = 21 robots would be needed.
@@ -139,14 +164,12 @@ fn too_few_robots_for_all_targets_visit_one_after_another() {
     let record = run("paper/completion_40x2.ron", &[swarm, "time_limit=800.0"], 0);
     assert_eq!(record.outcome, Outcome::Censored, "never all at once");
     assert!(record.lambda2_min().is_some_and(|lambda2| lambda2 > 0.0));
-    let targets = [(4.5, 0.0), (0.0, 4.5), (-4.5, 0.0), (0.0, -4.5)];
     let mut visits = Vec::new();
     for (at, places) in &record.trajectories {
-        for (index, (x, y)) in targets.into_iter().enumerate() {
-            let near = |place: &[f32; 2]| (f64::from(place[0]) - x).hypot(f64::from(place[1]) - y) <= 0.3;
-            if places.iter().any(near) && !visits.contains(&index) {
+        for target in (0..4).filter(|&target| is_visited(target, places)) {
+            if !visits.contains(&target) {
                 assert!(at.as_secs() > 0.0);
-                visits.push(index);
+                visits.push(target);
             }
         }
     }

@@ -19,7 +19,7 @@ SHARES = tuple(range(0, 100, 10))
 FAULT_ROBOTS = (40, 80)
 HAZARD = 0.0003
 """Probability a control step with which a fallible robot of the backbone goes silent: fitted, see the README."""
-HAZARDS = (0.0002, 0.0005)
+HAZARDS = (0.0002, 0.0004, 0.0005)
 """The other hazards that are tried."""
 TRIED_SHARES = (20, 50, 70, 90)
 """Shares at which other hazards and readings are tried, per cent."""

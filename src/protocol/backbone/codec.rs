@@ -9,6 +9,7 @@
 //! | accept, refuse | kind, to, sequence |
 //! | release | kind, to |
 //! | order | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
+//! | order with a reserve | kind, relays in reserve, and on as an order |
 //! | strand | kind, chain, next, number of robots, robots |
 //! | probe | as the detector has it |
 //!
@@ -32,6 +33,7 @@ const ORDER: u8 = 0x14;
 const ADOPT: u8 = 0x15;
 const WORK: u8 = 0x16;
 const REPLACE: u8 = 0x17;
+const ORDER_WITH_RESERVE: u8 = 0x18;
 const PARENT_STRAND: u8 = 0x20;
 const CHILD_STRAND: u8 = 0x21;
 const WIDE_IDS: u8 = 0x80;
@@ -102,7 +104,11 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
         Request::Release { to } => put_addressed(RELEASE, to, bytes),
         Request::Order(order) => {
             let dismantled = order.dismantled.bytes();
-            bytes.put_slice(&[ORDER, order.epoch, dismantled.len() as u8]);
+            match order.reserve {
+                0 => bytes.put_u8(ORDER),
+                reserve => bytes.put_slice(&[ORDER_WITH_RESERVE, reserve]),
+            }
+            bytes.put_slice(&[order.epoch, dismantled.len() as u8]);
             bytes.put_slice(dismantled);
         }
     }
@@ -187,7 +193,8 @@ impl Decoder for BackboneCodec {
                 sequence: reader.byte()?,
             }),
             RELEASE => Message::Request(Request::Release { to: reader.id(wide)? }),
-            ORDER => Message::Request(Request::Order(Order {
+            kind @ (ORDER | ORDER_WITH_RESERVE) => Message::Request(Request::Order(Order {
+                reserve: if kind == ORDER { 0 } else { reader.byte()? },
                 epoch: reader.byte()?,
                 dismantled: reader.targets()?,
             })),
@@ -320,12 +327,16 @@ mod tests {
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
             (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
             id().prop_map(|to| Request::Release { to }),
-            (any::<u8>(), prop::collection::vec(0_u8..255, 0..4)).prop_map(|(epoch, targets)| {
+            (any::<u8>(), prop::collection::vec(0_u8..255, 0..4), any::<u8>()).prop_map(|(epoch, targets, reserve)| {
                 let mut dismantled = TargetSet::default();
                 for target in targets {
                     dismantled.insert(target);
                 }
-                Request::Order(Order { epoch, dismantled })
+                Request::Order(Order {
+                    epoch,
+                    dismantled,
+                    reserve,
+                })
             }),
         ];
         prop_oneof![
@@ -387,6 +398,21 @@ mod tests {
         };
         assert_eq!(&encoded(strand(&[255, 1]))[..], [0x21, 3, 9, 2, 255, 1]);
         assert_eq!(&encoded(strand(&[256, 1]))[..], [0xa1, 3, 0, 9, 2, 1, 0, 0, 1]);
+    }
+
+    #[test]
+    fn an_order_grows_by_a_byte_only_where_there_is_a_reserve() {
+        let order = |reserve| {
+            let mut dismantled = TargetSet::default();
+            dismantled.insert(1);
+            Message::Request(Request::Order(Order {
+                epoch: 7,
+                dismantled,
+                reserve,
+            }))
+        };
+        assert_eq!(&encoded(order(0))[..], [0x14, 7, 1, 2]);
+        assert_eq!(&encoded(order(2))[..], [0x18, 2, 7, 1, 2]);
     }
 
     #[test]

@@ -140,12 +140,17 @@ pub struct HealingConfig {
     /// Seconds for which a robot that has lost its child, and the root that hears nothing of a target, wait for those
     /// beyond the break: as long as these may need to come to it.
     pub patience: Positive,
+    /// Relays that each chain gets beyond the fewest once the root has learnt that a robot was lost, at most, and fewer
+    /// as robots run out; 0 for none. The outermost follows the worker closely, so that a lost worker or relay is replaced within seconds.
+    /// The paper, whose aim is fewest robots, has no reserve; without failures there is none here either.
+    pub reserve: u8,
 }
 
 impl Default for HealingConfig {
     fn default() -> Self {
         Self {
             patience: Positive::new(60.0),
+            reserve: 2,
         }
     }
 }

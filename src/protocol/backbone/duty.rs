@@ -3,6 +3,7 @@
 use crate::geometry::Vec2;
 
 use super::Backbone;
+use super::isolated;
 use super::message::Role;
 use super::mission::Mission;
 use super::networker::Networker;
@@ -66,9 +67,7 @@ impl Backbone {
     pub(super) fn change_duty(&mut self, proximity: &[Vec2]) {
         let view = self.known.view(proximity);
         if view.is_isolated() {
-            // So near to the root a robot with a radio hears it.
-            let is_deaf = view.way_to_root().norm() <= view.parameters().critical;
-            if is_deaf && matches!(self.duty, Duty::Networker(_) | Duty::Worker(_)) {
+            if isolated::must_be_deaf(&view) && matches!(self.duty, Duty::Networker(_) | Duty::Worker(_)) {
                 self.become_free();
             }
             return;

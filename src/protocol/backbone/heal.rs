@@ -6,6 +6,10 @@
 //! goes to where that one was last heard, never so far that it loses its parent, passes on a need to grow, for the chain
 //! has one robot less, and waits to be asked. The root, which never moves, sends a free robot in its stead. So both ends
 //! take their half, and the robot that replaces the failed one comes in at the root's end.
+//!
+//! A hop takes about a minute at the paper's pace. So from the first lost robot on chains get relays in reserve (ours; the
+//! root orders them, `shortage.rs`): gaps are then shorter than a hop, and the outermost relay, which follows the worker
+//! closely, takes over from it within seconds. Without a failure there is no reserve, and chains have the fewest robots.
 
 use crate::engine::ActorId;
 use crate::geometry::Vec2;

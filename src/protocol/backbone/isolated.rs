@@ -17,14 +17,25 @@ const SPREAD: f64 = 0.4;
 /// Fractional part of the golden ratio: its multiples spread evenly.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
+/// Whether a robot that hears nobody must be deaf: it is so near to the root that a robot with a radio would hear it, or
+/// at its waiting place, where it stops.
+#[must_use]
+pub fn must_be_deaf(view: &View<'_>) -> bool {
+    view.way_to_root().norm() <= view.parameters().critical || is_waiting(view)
+}
+
+fn is_waiting(view: &View<'_>) -> bool {
+    (waiting_place(view) - view.position).norm() <= NEAR * view.parameters().safe
+}
+
 /// The velocity of a robot that hears nobody.
 #[must_use]
 pub fn velocity(view: &View<'_>) -> Vec2 {
     let parameters = view.parameters();
-    let way = waiting_place(view) - view.position;
-    if way.norm() <= NEAR * parameters.safe {
+    if is_waiting(view) {
         return Vec2::zeros();
     }
+    let way = waiting_place(view) - view.position;
     let desired = forces::target(way, parameters.target_gain);
     desired + view.avoidance(desired, parameters.avoidance_range)
 }

@@ -150,6 +150,8 @@ pub struct Order {
     pub epoch: u8,
     /// The targets whose chains are dismantled; all others are expanded.
     pub dismantled: TargetSet,
+    /// Relays in reserve that each chain that is expanded gets (ours).
+    pub reserve: u8,
 }
 
 /// A set of targets, a bit each.

@@ -64,12 +64,41 @@ impl Chain {
         origin + self.forward * self.rest + self.left() * self.lane
     }
 
+    /// Lengths of the springs between the robots of the chain and of the one at the worker, metres, where the chain has
+    /// so many `relays`. With a reserve the last spring is shorter, by which the outermost relay is near to the target.
+    #[must_use]
+    pub fn springs(&self, relays: usize) -> Springs {
+        if relays <= self.relays {
+            return Springs {
+                between: self.rest,
+                last: self.rest,
+            };
+        }
+        let between = self.rest * (self.relays + 1) as f64 / (relays as f64 + LAST_SPRING);
+        Springs {
+            between,
+            last: LAST_SPRING * between,
+        }
+    }
+
     /// The left of the way from the root to the target, a unit vector.
     #[must_use]
     pub fn left(&self) -> Vec2 {
         Vec2::new(-self.forward.y, self.forward.x)
     }
 }
+
+/// Lengths of a chain's springs, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Springs {
+    /// Of those between the root and the outermost relay.
+    pub between: f64,
+    /// Of the one from the outermost relay to the worker, as the relay feels it.
+    pub last: f64,
+}
+
+/// Length of the last spring of a chain that has a reserve, as a share of its others.
+const LAST_SPRING: f64 = 0.5;
 
 /// Settings in metres, m/s, 1/s and whole control steps. See [`BackboneConfig`] for what they mean.
 #[derive(Clone, Debug)]
@@ -107,6 +136,7 @@ pub struct Parameters {
     pub strand_lifetime: u64,
     pub hop_limit: usize,
     pub healing_patience: u64,
+    pub reserve: u8,
     pub silence_steps: u64,
     pub detector: DetectorConfig,
     pub circumstances: Circumstances,
@@ -257,6 +287,7 @@ impl Parameters {
             hop_limit: gossip.strand.hop_limit.into(),
             healing_patience: steps(config.healing.patience.get()),
             silence_steps: steps(detector.usual_silence(circumstances).as_secs()),
+            reserve: config.healing.reserve,
             detector: detector.clone(),
             circumstances,
         }
@@ -342,6 +373,22 @@ mod tests {
             .map(|chain| chain.relays)
             .collect();
         assert_eq!(relays, [0, 1, 1]);
+    }
+
+    #[test]
+    fn with_a_reserve_the_springs_still_add_up_to_the_same_and_the_last_is_half_as_long() {
+        let config: BackboneConfig = ron::from_str("(targets: Ring(count: 1, radius: 4.5))").unwrap();
+        let chain = parallel_chains(&config, 0, Vec2::new(4.5, 0.0), 1).next().unwrap();
+        for relays in [3, 4] {
+            let springs = chain.springs(relays);
+            let whole = relays as f64 * springs.between + springs.last;
+            assert!((whole - 3.0 * chain.rest).abs() < 1e-12);
+            assert!((springs.last - 0.5 * springs.between).abs() < 1e-12);
+        }
+        for relays in [1, 2] {
+            let springs = chain.springs(relays);
+            assert_eq!((springs.between, springs.last), (chain.rest, chain.rest));
+        }
     }
 
     #[test]

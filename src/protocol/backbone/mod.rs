@@ -166,7 +166,7 @@ impl Backbone {
                 Duty::Networker(networker) => {
                     networker.hear_child_strand(frame.sender, strand, self.known.id, self.known.step);
                 }
-                Duty::Root(root) => root.hear_child_strand(strand, self.known.id, self.known.step),
+                Duty::Root(root) => root.hear_child_strand(strand, &self.known),
                 Duty::Free | Duty::Worker(_) => {}
             },
             Message::Request(request) => self.hear_request(frame.sender, *request, out),

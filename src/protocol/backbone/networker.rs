@@ -50,8 +50,7 @@ impl Orphan {
     }
 }
 
-/// Control steps for which the networker of each further link leaves it to those before it to take over from a lost
-/// worker.
+/// Control steps for which a networker leaves it to each one nearer to the target to take over from a lost worker.
 const PRECEDENCE: u64 = 10;
 
 impl Networker {
@@ -177,14 +176,15 @@ impl Networker {
     }
 
     /// Whether it is the one to take over from its lost worker: the worker was its child, or whoever was between is
-    /// lost for long too, and nobody else is heard to have done so. Of the networkers of several links the first does.
+    /// lost for long too, and nobody else is heard to have done so. Of the networkers of several links the nearest to the
+    /// target does, at once.
     #[must_use]
     pub fn is_heir(&self, view: &View<'_>) -> bool {
         let Some(orphan) = self.orphan else { return false };
         let chain = self.slot.chain;
         let target = view.mission.chain(chain).target;
         let patience = if self.outer.is_empty() {
-            PRECEDENCE * u64::from(chain - view.mission.targets[usize::from(target)].chains.start)
+            PRECEDENCE * view.networkers_nearer_to(target) as u64
         } else {
             view.parameters().healing_patience
         };
@@ -233,12 +233,18 @@ impl Networker {
     /// Whether the chain needs a relay between this robot and the root.
     fn wants_parent(&self, view: &View<'_>) -> bool {
         let chain = view.mission.chain(self.slot.chain);
-        // The strand holds the worker and the relays up to the child: with this robot, as many relays as it has robots.
+        let relays = self.relays_outwards();
         self.slot.is_at_root(view)
-            && self.need(view)
-            && self.outer.len() < chain.relays
+            && (relays < chain.relays && self.need(view)
+                || relays >= chain.relays && relays < view.relays_wanted(self.slot.chain))
             && view.expands(self.slot.chain)
             && self.slot.is_out_enough(view)
+    }
+
+    /// Relays from this one to the worker, this one included: as many as the strand has robots, the worker and the relays
+    /// up to the child.
+    const fn relays_outwards(&self) -> usize {
+        self.outer.len()
     }
 
     /// Heads for its place beside its child.
@@ -259,12 +265,19 @@ impl Networker {
         let Some(parent) = view.way_to(self.slot.parent) else {
             return Vec2::zeros();
         };
-        let spring = |way| forces::spring(way, chain.rest, parameters.spring_gain, parameters.push_limit);
+        let spring = |way, rest| forces::spring(way, rest, parameters.spring_gain, parameters.push_limit);
+        // Between the root and the parent, this one, and from here to the worker.
+        let springs = chain.springs(self.slot.relays() + self.relays_outwards());
+        let to_parent = spring(parent, springs.between);
         if parent.norm() >= parameters.critical {
-            return spring(parent);
+            return to_parent;
         }
         let child = view.way_to(self.child);
-        let desired = spring(parent) + child.map_or_else(Vec2::zeros, spring) + lane_pull(view, chain);
+        let to_child = child.map_or_else(Vec2::zeros, |way| {
+            let is_last = self.relays_outwards() == 1;
+            spring(way, if is_last { springs.last } else { springs.between })
+        });
+        let desired = to_parent + to_child + lane_pull(view, chain);
         let shorter = child.map_or(f64::INFINITY, |child| child.norm()).min(parent.norm());
         let open = forces::gate(shorter, parameters.gate_opening(), parameters.gate);
         desired + self.avoidance(view, desired) * open

@@ -158,6 +158,12 @@ impl Slot {
         self.parent == view.mission.root
     }
 
+    /// Relays from the root to the parent, the parent included.
+    #[must_use]
+    pub fn relays(&self) -> usize {
+        self.strand.len().saturating_sub(1)
+    }
+
     /// Whether the robot is far enough from the root for a relay between the two.
     #[must_use]
     pub fn is_out_enough(&self, view: &View<'_>) -> bool {

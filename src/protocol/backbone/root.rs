@@ -9,7 +9,7 @@ use super::message::{Message, Order, Request, Strand};
 use super::mission::Mission;
 use super::recruit::Recruiter;
 use super::shortage::Shortage;
-use super::view::View;
+use super::view::{Knowledge, View};
 
 /// The root's state.
 #[derive(Debug)]
@@ -62,9 +62,9 @@ impl Root {
     }
 
     /// Takes in the strand of a chain that ends here.
-    pub fn hear_child_strand(&mut self, heard: &Strand, me: ActorId, step: u64) {
-        if heard.next == me {
-            self.lines.hear(heard, step);
+    pub fn hear_child_strand(&mut self, heard: &Strand, known: &Knowledge) {
+        if heard.next == known.id {
+            self.lines.hear(heard, &known.neighbours, known.step);
         }
     }
 

@@ -1,5 +1,13 @@
 //! Too few robots (paper algorithm 3): the root has the chains with the fewest robots dismantled, so that the others can
 //! be completed, and when those have been held, has the targets left out visited in their stead.
+//!
+//! The paper says it in two ways. Its algorithm and its section on the root have the chain with the fewest robots
+//! dismantled whenever too few are predicted, and the others expanded; its conclusions speak of "constructing a single full
+//! chain, and visiting one target at a time". This is the algorithm, asked again until the others can be completed. Where
+//! robots do for one target alone it comes to what the conclusions say; where they do for more, several targets are held
+//! at once, and none is visited later for it.
+//!
+//! The root also orders the reserve (ours): relays beyond the fewest, from the first lost robot on.
 
 use std::cmp::Reverse;
 
@@ -16,6 +24,8 @@ pub struct Shortage {
     short_for: u64,
     /// Control steps for which the robots would have done for all targets, without a break.
     ample_for: u64,
+    /// Control steps for which the robots were too few for the reserve that is ordered, without a break.
+    reserve_short_for: u64,
     /// Control steps for which each target was held without a break.
     held_for: Vec<u64>,
     /// Whether each target was ever held for long enough.
@@ -30,6 +40,7 @@ impl Shortage {
             order: Order::default(),
             short_for: 0,
             ample_for: 0,
+            reserve_short_for: 0,
             held_for: vec![0; targets],
             visited: vec![false; targets],
         }
@@ -40,6 +51,7 @@ impl Shortage {
         self.watch_visits(view, lines);
         let stock = Stock::of(view, lines, self.order);
         let patience = view.parameters().shortage_patience;
+        self.order_reserve(view, lines, &stock);
         let is_left_out = |target: &usize| !self.order.expands(*target as u8);
         count(&mut self.short_for, stock.lacking() > stock.to_come);
         count(&mut self.ample_for, stock.needed() <= stock.relays());
@@ -58,6 +70,23 @@ impl Shortage {
             self.advance(next, &stock);
         }
         self.order
+    }
+
+    /// From the first lost robot on chains get relays in reserve, as many as the robots are enough for; fewer once they
+    /// were not enough for long.
+    fn order_reserve(&mut self, view: &View<'_>, lines: &Lines, stock: &Stock) {
+        let parameters = view.parameters();
+        let most = if lines.any_lost() { parameters.reserve } else { 0 };
+        let affordable = (0..=most).rev().find(|&reserve| stock.affords(reserve)).unwrap_or(0);
+        count(&mut self.reserve_short_for, affordable < self.order.reserve);
+        if affordable > self.order.reserve || self.reserve_short_for > parameters.shortage_patience {
+            self.order = Order {
+                epoch: self.order.epoch.wrapping_add(1),
+                reserve: affordable,
+                ..self.order
+            };
+            self.reserve_short_for = 0;
+        }
     }
 
     fn expanded(&self) -> impl Iterator<Item = usize> {
@@ -115,6 +144,7 @@ impl Shortage {
         self.order = Order {
             epoch: self.order.epoch.wrapping_add(1),
             dismantled,
+            ..self.order
         };
         self.short_for = 0;
         self.ample_for = 0;
@@ -139,6 +169,7 @@ struct Relays {
     has: usize,
     needs: usize,
     lacks: usize,
+    chains: usize,
     is_expanded: bool,
 }
 
@@ -154,6 +185,7 @@ impl Stock {
                 let has = lines.relays(chain);
                 let needs = view.mission.chain(chain).relays;
                 relays.has += has;
+                relays.chains += 1;
                 relays.needs += needs;
                 relays.lacks += needs.saturating_sub(has);
             }
@@ -179,6 +211,16 @@ impl Stock {
     /// Relays that the expanded targets lack.
     fn lacking(&self) -> usize {
         self.expanded().map(|target| self.targets[target].lacks).sum()
+    }
+
+    /// Whether each chain of the expanded targets can have `reserve` relays more than it needs, and a robot for each
+    /// target is left.
+    fn affords(&self, reserve: u8) -> bool {
+        let of_target = |target| {
+            let relays: &Relays = &self.targets[target];
+            relays.needs + relays.chains * usize::from(reserve) + 1
+        };
+        self.expanded().map(of_target).sum::<usize>() <= self.relays()
     }
 
     /// Relays that all targets need.

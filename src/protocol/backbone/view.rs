@@ -107,12 +107,35 @@ impl<'a> View<'a> {
         self.order.expands(self.mission.chain(chain).target)
     }
 
+    /// Relays that chain number `chain` is to have: the fewest that will do, and those in reserve.
+    #[must_use]
+    pub fn relays_wanted(&self, chain: u8) -> usize {
+        self.mission.chain(chain).relays + usize::from(self.order.reserve)
+    }
+
     /// The worker of target number `target`, if it was heard of late.
     #[must_use]
     pub fn worker_of(&self, target: u8) -> Option<&'a Neighbour> {
         let chain = self.mission.targets[usize::from(target)].chains.start;
         let is_it = |known: &&Neighbour| known.status.role == Role::Worker && known.status.chain == chain;
         self.neighbours.iter().find(is_it)
+    }
+
+    /// How many networkers of target number `target` in sight are nearer to it than this robot.
+    #[must_use]
+    pub fn networkers_nearer_to(&self, target: u8) -> usize {
+        let plan = &self.mission.targets[usize::from(target)];
+        let distance = |position: Vec2| (position - plan.at).norm_squared();
+        let own = distance(self.position);
+        let is_nearer = |known: &&Neighbour| {
+            known.status.role == Role::Networker
+                && plan.chains.contains(&known.status.chain)
+                && distance(known.position)
+                    .total_cmp(&own)
+                    .then(known.id.cmp(&self.id))
+                    .is_lt()
+        };
+        self.neighbours.iter().filter(is_nearer).count()
     }
 
     /// Whether nobody was heard of late, though somebody must have been: all others are gone or its own radio is dead.

@@ -142,8 +142,14 @@ impl Worker {
             let Some(way) = view.way_to(slot.parent).filter(|_| !counted) else {
                 continue;
             };
-            let rest = view.mission.chain(slot.chain).rest;
-            let spring = forces::spring(way, rest, parameters.spring_gain, parameters.push_limit);
+            let chain = view.mission.chain(slot.chain);
+            // A relay in reserve comes close and does not push.
+            let push = if slot.relays() > chain.relays {
+                0.0
+            } else {
+                parameters.push_limit
+            };
+            let spring = forces::spring(way, chain.rest, parameters.spring_gain, push);
             pull.springs += spring;
             pull.farthest = pull.farthest.max(way.norm());
             if way.norm() >= parameters.critical {

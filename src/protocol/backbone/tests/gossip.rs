@@ -92,6 +92,7 @@ fn an_order_is_passed_on_as_often_as_asked_and_a_newer_one_begins_anew() {
     let order = |epoch| Order {
         epoch,
         dismantled: TargetSet::default(),
+        reserve: 0,
     };
     let mut bench = Bench::with(&settings, WORKER, 1.2);
     let passed_on = |bench: &mut Bench, epoch| {

@@ -246,3 +246,113 @@ fn the_root_appoints_a_worker_for_a_target_that_has_none_left() {
     assert!(answers.contains(&accept(ROOT, 1)), "{answers:?}");
     assert_eq!(spare.role(), Role::Worker);
 }
+
+/// The root with a chain of two relays, of which it heard at 1.4 m the one with id `FREE`; so many free robots are near.
+fn root_with_chain(free: u32) -> (Bench, Vec<(u32, f64, Message)>) {
+    let mut root = Bench::new(ROOT, 0.0);
+    let mut heard = vec![
+        (FREE, 1.4, status(Role::Networker, false, 1)),
+        (FREE, 1.4, Message::ChildStrand(strand(ROOT, &[WORKER, CHILD, FREE]))),
+    ];
+    heard.extend((0..free).map(|robot| (20 + robot, 0.4, status(Role::Free, false, 0))));
+    root.run(SILENT_S, &heard);
+    assert_eq!(root.robot.known.order, Order::default(), "nobody was lost");
+    (root, heard)
+}
+
+#[test]
+fn from_the_first_lost_robot_on_the_root_orders_as_large_a_reserve_as_robots_are_enough_for() {
+    // The chain needs two relays, each step of reserve one more, and one robot is to be left.
+    for (free, reserve) in [(0, 0), (2, 0), (3, 1), (4, 2), (9, 2)] {
+        let (mut root, mut heard) = root_with_chain(free);
+        heard[1].2 = Message::ChildStrand(strand(ROOT, &[WORKER, FREE]));
+        root.run(0.2, &heard);
+        assert_eq!(root.robot.known.order.reserve, reserve, "{free} free robots");
+    }
+}
+
+#[test]
+fn a_robot_that_leaves_its_chain_in_the_roots_sight_is_not_a_lost_one() {
+    let (mut root, mut heard) = root_with_chain(9);
+    heard[1].2 = Message::ChildStrand(strand(ROOT, &[WORKER, FREE]));
+    heard.push((CHILD, 1.0, status(Role::Free, false, 0)));
+    heard.rotate_right(1);
+    root.run(0.2, &heard);
+    assert_eq!(root.robot.known.order.reserve, 0);
+}
+
+#[test]
+fn the_reserve_is_reduced_when_robots_were_too_few_for_it_for_long_and_not_before() {
+    let (mut root, mut heard) = root_with_chain(4);
+    heard[1].2 = Message::ChildStrand(strand(ROOT, &[WORKER, FREE]));
+    root.run(0.2, &heard);
+    let fewer = &heard[..heard.len() - 1];
+    root.run(13.0, fewer);
+    assert_eq!(
+        root.robot.known.order.reserve, 2,
+        "missed after 4 s, and then 10 s of patience"
+    );
+    root.run(2.0, fewer);
+    assert_eq!(root.robot.known.order.reserve, 1);
+}
+
+#[test]
+fn a_relay_at_the_root_recruits_beyond_the_fewest_when_a_reserve_is_ordered_though_its_worker_needs_none() {
+    let order = |reserve| {
+        let dismantled = TargetSet::default();
+        let epoch = reserve;
+        (
+            ROOT,
+            0.0,
+            Message::Request(Request::Order(Order {
+                epoch,
+                dismantled,
+                reserve,
+            })),
+        )
+    };
+    for (robots, reserve, recruits) in [(2, 0, false), (2, 1, true), (3, 1, false), (3, 2, true)] {
+        let mut relay = relay();
+        let outer: Vec<u32> = [WORKER, FAR, CHILD][3 - robots..].to_vec();
+        let mut heard = below().to_vec();
+        heard[2].2 = Message::ChildStrand(strand(FREE, &outer));
+        heard.extend([order(reserve), (20, 0.4, status(Role::Free, false, 0))]);
+        let asks = requests(&relay.run(0.3, &heard));
+        let joins = asks
+            .iter()
+            .any(|request| matches!(request, Request::Join { to: ActorId(20), .. }));
+        assert_eq!(joins, recruits, "{robots} relays, a reserve of {reserve}");
+    }
+}
+
+#[test]
+fn of_the_relays_beside_a_lost_worker_the_one_nearest_to_the_target_takes_over_at_once() {
+    for (other, waits) in [(1.3, false), (1.5, true)] {
+        let mut relay = Bench::new(FREE, 1.4);
+        relay.step(&[(WORKER, 2.8, join(FREE, 1))]);
+        let strand = Message::ChildStrand(strand(FREE, &[WORKER]));
+        relay.run(
+            0.3,
+            &[(WORKER, 2.8, status(Role::Worker, true, 1)), (WORKER, 2.8, strand)],
+        );
+        let heard = [
+            (ROOT, 0.0, status(Role::Root, false, 0)),
+            (FAR, other, status(Role::Networker, false, 1)),
+        ];
+        relay.run(4.2, &heard);
+        let role = if waits { Role::Networker } else { Role::Worker };
+        assert_eq!(relay.role(), role, "the other at {other} m");
+        relay.run(1.0, &heard);
+        assert_eq!(relay.role(), Role::Worker, "the other did not");
+    }
+}
+
+#[test]
+fn a_robot_that_hears_nobody_is_free_where_it_stops_though_that_is_not_within_reach_of_the_root() {
+    let mut worker = worker_with_parent();
+    worker.run(SILENT_S, &[]);
+    // Its only target lies ahead, so its waiting place is behind the root, 1.7 m away.
+    worker.x = -1.85;
+    let output = worker.step(&[]);
+    assert_eq!((worker.role(), output.velocity), (Role::Free, Some(Vec2::zeros())));
+}

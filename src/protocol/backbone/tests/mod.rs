@@ -319,6 +319,7 @@ fn a_root_that_sees_too_few_robots_for_long_leaves_out_a_target_and_not_before()
     let order = Order {
         epoch: 1,
         dismantled: only(1),
+        reserve: 0,
     };
     assert_eq!(root.robot.known.order, order);
     let repeated = (0..10).flat_map(|_| requests(&root.step(&workers))).collect::<Vec<_>>();
@@ -341,7 +342,11 @@ fn a_root_with_enough_robots_orders_nothing() {
 #[test]
 fn an_older_order_does_not_undo_a_newer_one() {
     let mut free = Bench::new(FREE, 0.7);
-    let order = |epoch, dismantled| Order { epoch, dismantled };
+    let order = |epoch, dismantled| Order {
+        epoch,
+        dismantled,
+        reserve: 0,
+    };
     let (newer, older) = (order(2, only(1)), order(1, TargetSet::default()));
     free.step(&[newer, older].map(|order| (ROOT, 0.0, Message::Request(Request::Order(order)))));
     assert_eq!(free.robot.known.order, newer);
