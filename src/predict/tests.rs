@@ -117,8 +117,11 @@ fn timeouts_and_nfd_s_are_predicted_as_their_own_closed_forms_have_it() {
 
 #[test]
 fn detectors_without_closed_forms_are_said_to_have_none() {
-    for detector in ["PhiAccrual(dialect: Chitchat)", "Swim()"] {
-        let expected = preflight(&ROW.replace("Timeout(3.5)", detector));
+    for detector in ["PhiAccrual(dialect: Chitchat)", "Swim(indirect_checks: 0)"] {
+        let text = ROW
+            .replace("Timeout(3.5)", detector)
+            .replace("period: 0.5", "period: 0.1");
+        let expected = preflight(&format!("{text}, radio: (latency: Constant(0.02))"));
         assert!(expected.get("mistake_rate_hz").is_none(), "{detector}");
         assert!(
             expected.not_predicted.iter().any(|refused| refused.name == "detection"),
