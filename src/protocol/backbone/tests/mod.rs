@@ -33,6 +33,7 @@ fn robots(targets: u8) -> Vec<Backbone> {
 struct Bench {
     robot: Backbone,
     x: f64,
+    y: f64,
     sequence: u32,
 }
 
@@ -41,6 +42,7 @@ impl Bench {
         Self {
             robot: robots(1).remove(robot as usize),
             x,
+            y: 0.0,
             sequence: 0,
         }
     }
@@ -59,13 +61,13 @@ impl Bench {
                 payload_bytes: 4,
                 message: message.clone(),
             }),
-            displacement: [(x - self.x) as f32, 0.0],
+            displacement: [(x - self.x) as f32, -self.y as f32],
         });
         let mut input = Input {
             wake: Wake::ControlStep,
             inbox: inbox.collect(),
             pose: Pose {
-                position: Vec2::new(self.x, 0.0),
+                position: Vec2::new(self.x, self.y),
                 heading: 0.0,
             },
             proximity: Vec::new(),
