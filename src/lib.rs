@@ -19,7 +19,7 @@
 //! ```
 //! use std::rc::Rc;
 //!
-//! use desim::engine::Span;
+//! use desim::engine::{ActorId, Span};
 //! use desim::geometry::{Pose, Vec2};
 //! use desim::protocol::heartbeat::{Heartbeat, Settings};
 //! use desim::quantity::Probability;
@@ -31,8 +31,10 @@
 //!
 //! let places = [Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0)];
 //! let poses = places.map(|position| Pose { position, heading: 0.0 }).to_vec();
-//! let settings = Rc::new(Settings::new(&Default::default(), &Default::default(), Span::from_secs(0.1)));
-//! let robots = vec![Heartbeat::new(settings.clone()), Heartbeat::new(settings)];
+//! let step = Span::from_secs(0.1);
+//! let settings = Settings::new(&Default::default(), &Default::default(), step, poses.len(), setup.streams());
+//! let settings = Rc::new(settings);
+//! let robots: Vec<Heartbeat> = (0..2).map(|id| Heartbeat::new(ActorId(id), settings.clone())).collect();
 //!
 //! let record = setup.run(poses, robots, DriverKind::Actors, &Default::default())?;
 //!
@@ -74,6 +76,7 @@ pub mod faults;
 pub mod geometry;
 pub mod metrics;
 pub mod motion;
+pub mod predict;
 pub mod protocol;
 pub mod quantity;
 pub mod radio;

@@ -118,7 +118,14 @@ fn watch(scenario: &Scenario, trial: u32) -> (Vec<Vec<Ties>>, TrialRecord) {
     let poses = deploy(&swarm.deploy, arena, swarm.robots, body, &setup.streams()).expect("room for all");
     let period = Span::from_secs(scenario.control.period.get());
     let diary = Diary::new(RefCell::new(vec![Vec::new(); poses.len()]));
-    let robots = backbone::swarm(config, &scenario.gossip, &scenario.detector, period, &poses);
+    let robots = backbone::swarm(
+        config,
+        &scenario.gossip,
+        &scenario.detector,
+        period,
+        &poses,
+        setup.streams(),
+    );
     let watched = robots.into_iter().enumerate().map(|(id, robot)| Watched {
         robot,
         id,

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use desim::cli::check::{Say, check};
 use desim::protocol::backbone::TargetsConfig;
 use desim::radio::{LatencyConfig, LossConfig};
 use desim::scenario::{Override, ProtocolConfig, Report, Scenario, json_schema, load, parse, question, to_ron};
@@ -75,6 +76,7 @@ fn the_schema_states_ranges_and_refuses_what_lies_beyond() {
         ("/radio/range", 0.into()),
         ("/name", "a/b".into()),
         ("/protocol/Backbone/targets", "Ring".into()),
+        ("/protocol/Backbone/targets/Ring/links", 0.into()),
     ] {
         let mut json = well.clone();
         *json.pointer_mut(field).unwrap() = bad;
@@ -322,6 +324,36 @@ fn the_mistake_of_statuses_rarer_than_the_timeout_bears() {
 }
 
 #[test]
+fn the_mistake_of_intervals_that_phi_accrual_assumes_too_short() {
+    insta::assert_snapshot!(refused(&[
+        "detector=PhiAccrual(dialect: Chitchat, initial_interval: Seconds(0.05))",
+        "gossip.status.interval=0.5"
+    ]));
+}
+
+#[test]
+fn the_mistake_of_statuses_that_come_too_late_to_count() {
+    insta::assert_snapshot!(refused(&["detector=NfdS(shift: 0.05)", "radio.latency=Constant(0.06)"]));
+}
+
+#[test]
+fn the_mistake_of_a_setting_of_another_dialect() {
+    insta::assert_snapshot!(refused(&[
+        "detector=PhiAccrual(dialect: Cassandra, acceptable_pause: Seconds(3.0))"
+    ]));
+}
+
+#[test]
+fn the_mistake_of_a_probe_that_nobody_can_answer_in_time() {
+    insta::assert_snapshot!(refused(&["detector=Swim(probe_interval: 0.3, probe_timeout: 0.1)"]));
+}
+
+#[test]
+fn the_mistake_of_no_time_for_answers_through_others() {
+    insta::assert_snapshot!(refused(&["detector=Swim(probe_interval: 0.9, probe_timeout: 0.4)"]));
+}
+
+#[test]
 fn the_mistake_of_an_override_with_an_unknown_field() {
     insta::assert_snapshot!(refused(&["radio.los=Bernoulli(0.3)"]));
 }
@@ -339,7 +371,8 @@ fn the_mistake_of_an_override_without_a_value() {
 fn checked(files: &[PathBuf], overrides: &[&str], resolved: bool) -> (bool, String) {
     let overrides: Vec<_> = overrides.iter().map(|text| (*text).to_owned()).collect();
     let mut out = Vec::new();
-    let well = desim::cli::check::check(files, &overrides, resolved, &mut out).unwrap();
+    let say = if resolved { Say::Resolved } else { Say::Well };
+    let well = check(files, &overrides, say, &mut out).unwrap();
     (well, String::from_utf8(out).unwrap())
 }
 
@@ -391,7 +424,7 @@ fn check_refuses_overrides_that_are_none_before_it_reads_files() {
 #[test]
 fn the_schema_is_printed_as_json() {
     let mut out = Vec::new();
-    desim::cli::schema::schema(&mut out).unwrap();
+    desim::cli::schema::schema(false, &mut out).unwrap();
     let printed: serde_json::Value = serde_json::from_slice(&out).unwrap();
     assert_eq!(&printed, json_schema().as_value());
 }

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use desim::engine::Span;
+use desim::engine::{ActorId, Span, Streams};
 use desim::metrics::MetricsConfig;
 use desim::motion::MotionConfig;
 use desim::protocol::control::{ControlConfig, PhaseConfig};
@@ -23,11 +23,18 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
     let setup = setup(workload);
     let period = Span::from_secs(PERIOD_S);
     let detector = DetectorConfig::Timeout(Positive::new(TIMEOUT_S));
-    let settings = Rc::new(Settings::new(&GossipConfig::default(), &detector, period));
+    let settings = Rc::new(Settings::new(
+        &GossipConfig::default(),
+        &detector,
+        period,
+        workload.poses.len(),
+        Streams::new(SEED, 0),
+    ));
     let robots = workload
         .poses
         .iter()
-        .map(|_| Heartbeat::new(Rc::clone(&settings)))
+        .zip(0..)
+        .map(|(_, id)| <Heartbeat>::new(ActorId(id), Rc::clone(&settings)))
         .collect();
     let record = setup
         .run(workload.poses.clone(), robots, driver, &CancellationToken::new())

@@ -8,7 +8,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::failure::Failure;
 use super::interrupt;
-use super::scenario::Format;
+use super::shown::Format;
 use crate::engine::ActorId;
 use crate::export::{self, Contents, Folder, Manifest};
 use crate::metrics::TrialRecord;
@@ -72,7 +72,8 @@ pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
             env!("CARGO_PKG_VERSION")
         ));
     }
-    let explanation = Explanation::of(&scenario.name, &record).expect("the robot was traced");
+    let mut explanation = Explanation::of(&scenario.name, &record).expect("the robot was traced");
+    explanation.rule = scenario.detector.words();
     let chosen = chosen(&explanation, arguments)?;
     let mut out = io::stdout().lock();
     match (arguments.format, chosen) {

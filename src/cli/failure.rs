@@ -3,7 +3,7 @@
 use std::io;
 
 use crate::experiment::PartsError;
-use crate::export::{FolderError, WriteError};
+use crate::export::{FolderError, ResultsError, WriteError};
 use crate::scenario::Report;
 
 /// Exit status of an interrupted command.
@@ -84,6 +84,15 @@ impl From<PartsError> for Failure {
         match error {
             PartsError::Busy(_) => Self::Input(format!("error: {error}")),
             PartsError::Io { .. } | PartsError::Damaged { .. } => Self::other(&error),
+        }
+    }
+}
+
+impl From<ResultsError> for Failure {
+    fn from(error: ResultsError) -> Self {
+        match error {
+            ResultsError::Folder(error) => error.into(),
+            wrong => Self::Input(format!("error: {wrong}")),
         }
     }
 }

@@ -1,13 +1,17 @@
 //! The command line: the only place that prints and the only exit code.
 
 pub mod check;
+pub mod compare;
 pub mod explain;
 mod failure;
 mod interrupt;
 pub mod log;
 mod progress;
+pub mod report;
 pub mod scenario;
 pub mod schema;
+mod settings;
+pub mod shown;
 
 use std::io;
 use std::path::PathBuf;
@@ -15,9 +19,13 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use check::Say;
+use compare::CompareArguments;
 use explain::ExplainArguments;
 pub use failure::Failure;
+use report::ReportArguments;
 use scenario::ScenarioArguments;
+use shown::Format;
 
 /// What the user asks for.
 #[derive(Debug, Parser)]
@@ -33,7 +41,8 @@ Runs a robot swarm's protocol over a radio that loses and delays frames, often e
 what the protocol costs, when it finishes, and what breaks it.
 
 A scenario file holds one question. `desim scenario` answers it: a report on the terminal, tables, pictures and a \
-summary in a folder.";
+summary in a folder. `desim report` makes a page of charts of that folder. A study file varies a scenario; `desim compare` says \
+which of its settings is better, by how much, how sure.";
 
 const EXIT_STATUS: &str = "\
 Exit status:
@@ -52,25 +61,42 @@ pub enum Command {
     /// Run the trials of a scenario and report what they show
     #[command(long_about = scenario::LONG_ABOUT)]
     Scenario(ScenarioArguments),
-    /// Say everything that is wrong with scenario files, without running them
+    /// Compare the settings of a study, or several scenarios, under common random numbers
+    #[command(long_about = compare::LONG_ABOUT)]
+    Compare(CompareArguments),
+    /// Say everything that is wrong with scenario and study files, without running them
     ///
-    /// Each fault comes with its file, line and column, and with what would be right. Exit status 2 if there is any.
+    /// Of a study, every combination is checked. Each fault comes with its file, line and column, and with what would be right. Exit status 2 if there is any.
     Check {
-        /// Scenario files (RON)
+        /// Scenario files and study files (RON)
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
         /// Set a value of the scenarios, such as `radio.loss=Bernoulli(0.3)`; may be given many times
         #[arg(long = "set", value_name = "PATH=VALUE")]
         overrides: Vec<String>,
-        /// Print each scenario whole, with every default and override in it
+        /// Print each scenario whole, those of a study's settings too, with every default and override in it
         #[arg(long)]
         resolved: bool,
+        /// Print what closed forms expect of each scenario: neighbours, loss, latency, bytes, mistakes of the detector, each with
+        /// its formula and with what it takes for granted
+        #[arg(long, conflicts_with = "resolved")]
+        predict: bool,
+        /// How to print what is expected: as tables, or as one JSON list with an entry a file
+        #[arg(long, value_enum, default_value_t, requires = "predict")]
+        format: Format,
     },
+    /// Report finished results again: on the terminal, and as a page of charts
+    #[command(long_about = report::LONG_ABOUT)]
+    Report(ReportArguments),
     /// Tell in words and times why a robot was suspected in a finished trial
     #[command(long_about = explain::LONG_ABOUT)]
     Explain(ExplainArguments),
     /// Print the JSON Schema of scenario files, for editors
-    Schema,
+    Schema {
+        /// That of study files instead
+        #[arg(long)]
+        study: bool,
+    },
 }
 
 /// Runs a command.
@@ -81,16 +107,26 @@ pub fn run(command: Command) -> Result<(), Failure> {
     let mut out = io::stdout();
     match command {
         Command::Scenario(arguments) => scenario::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Check {
             files,
             overrides,
             resolved,
+            predict,
+            format,
         } => {
-            let well = check::check(&files, &overrides, resolved, &mut out)?;
+            let say = match (resolved, predict, format) {
+                (true, ..) => Say::Resolved,
+                (_, true, Format::Text) => Say::Expected,
+                (_, true, Format::Json) => Say::ExpectedJson,
+                (false, false, _) => Say::Well,
+            };
+            let well = check::check(&files, &overrides, say, &mut out)?;
             if well { Ok(()) } else { Err(Failure::Shown) }
         }
+        Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
-        Command::Schema => Ok(schema::schema(&mut out)?),
+        Command::Schema { study } => Ok(schema::schema(study, &mut out)?),
     }
 }
 

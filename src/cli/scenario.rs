@@ -1,6 +1,5 @@
 //! `desim scenario`: runs the trials of a scenario, keeps their results, and reports.
 
-use std::io::{self, IsTerminal, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::thread;
@@ -12,10 +11,10 @@ use super::check;
 use super::failure::Failure;
 use super::interrupt;
 use super::progress::Progress;
-use crate::experiment::{Ending, Experiment, ExperimentError, Parts};
+use super::shown::{Finished, Format};
+use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
 use crate::export::{self, Contents, Folder, Manifest, Pictures};
 use crate::metrics::Summary;
-use crate::report::{self, Speed};
 use crate::scenario::{Scenario, contents, parse, question};
 use crate::simulation::{DriverKind, TrialError, run_trial};
 
@@ -86,16 +85,6 @@ pub enum Drawn {
     All,
 }
 
-/// What is printed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// A report for people
-    #[default]
-    Text,
-    /// The same figures as one JSON document, and nothing else
-    Json,
-}
-
 impl From<Driver> for DriverKind {
     fn from(driver: Driver) -> Self {
         match driver {
@@ -133,19 +122,17 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
             arguments.remark(&format!("{} holds these results already", folder.path().display()));
             (folder.summary()?, manifest)
         }
-        None => simulate(&folder, &scenario, arguments)?,
+        None => simulate(&folder, &scenario, question(&text), arguments)?,
     };
-    let control_period_s = scenario.control.period.get();
-    print(
-        &Finished {
-            question: question(&text),
-            control_period_s,
-            folder,
-            summary,
-            manifest,
-        },
-        arguments,
-    )
+    let finished = Finished {
+        question: question(&text),
+        scenario: &scenario,
+        folders: folder.path().to_owned(),
+        summary: &summary,
+        trials: &manifest.trials,
+        files: manifest.files.keys().map(String::as_str).collect(),
+    };
+    print(&finished, arguments)
 }
 
 impl ScenarioArguments {
@@ -193,20 +180,23 @@ fn finished(folder: &Folder, scenario: &Scenario, force: bool) -> Result<Option<
 fn simulate(
     folder: &Folder,
     scenario: &Scenario,
+    question: Option<String>,
     arguments: &ScenarioArguments,
 ) -> Result<(Summary, Manifest), Failure> {
     let stop = CancellationToken::new();
     interrupt::cancels(&stop).map_err(|error| Failure::other(&error))?;
     let parts = Parts::open(&folder.trials())?;
-    folder.declare(&Manifest::new(scenario))?;
+    folder.declare(&Manifest {
+        question,
+        ..Manifest::new(scenario)
+    })?;
     let experiment = Experiment {
         trials: scenario.trials,
         seed: scenario.seed,
-        jobs: arguments
-            .jobs
-            .or_else(|| thread::available_parallelism().ok())
-            .unwrap_or(NonZeroUsize::MIN),
         parts: &parts,
+    };
+    let pool = Pool {
+        jobs: threads(arguments.jobs),
         stop: &stop,
     };
     let kept = experiment.kept();
@@ -214,8 +204,8 @@ fn simulate(
         arguments.remark(&format!("going on after {kept} of {} trials", scenario.trials));
     }
     let mut progress = Progress::start(scenario.trials, kept, arguments.quiet);
-    let run = |trial| run_trial(scenario, trial, arguments.driver.into(), &stop);
-    let ending = experiment.run(run, |part| progress.count(part));
+    let run = |_, trial| run_trial(scenario, trial, arguments.driver.into(), &stop);
+    let ending = pool.run(std::slice::from_ref(&experiment), run, |_, part| progress.count(part));
     drop(progress);
     match ending {
         Ok(Ending::Finished) => Ok(export::write(folder, parts, scenario, arguments.pictures.into())?),
@@ -225,6 +215,13 @@ fn simulate(
             Err(failure(error))
         }
     }
+}
+
+/// As many threads as asked for, or one for each processor.
+#[must_use]
+pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
+    let processors = || thread::available_parallelism().ok();
+    asked.or_else(processors).unwrap_or(NonZeroUsize::MIN)
 }
 
 /// Leaves an unfinished experiment: finished trials stay, and if there are none, nothing does. Says so.
@@ -241,7 +238,9 @@ fn leave(folder: &Folder, experiment: &Experiment, scenario: &Scenario) -> Resul
     ))
 }
 
-fn failure(error: ExperimentError<TrialError>) -> Failure {
+/// What a failed trial means to the user.
+#[must_use]
+pub fn failure(error: ExperimentError<TrialError>) -> Failure {
     match error {
         ExperimentError::Trial {
             source: TrialError::Deploy(error),
@@ -252,39 +251,9 @@ fn failure(error: ExperimentError<TrialError>) -> Failure {
     }
 }
 
-/// Finished results, to be shown.
-struct Finished {
-    question: Option<String>,
-    control_period_s: f64,
-    folder: Folder,
-    summary: Summary,
-    manifest: Manifest,
-}
-
 fn print(finished: &Finished, arguments: &ScenarioArguments) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match arguments.format {
-        Format::Json => out.write_all(&export::json(&finished.summary))?,
-        Format::Text if arguments.quiet => {}
-        Format::Text => out.write_all(text(finished).as_bytes())?,
+    if arguments.quiet && arguments.format == Format::Text {
+        return Ok(());
     }
-    Ok(out.flush()?)
-}
-
-fn text(finished: &Finished) -> String {
-    let trials = &finished.manifest.trials;
-    let files: Vec<_> = finished.manifest.files.keys().map(String::as_str).collect();
-    report::terminal(&report::Input {
-        question: finished.question.as_deref(),
-        summary: &finished.summary,
-        control_period_s: finished.control_period_s,
-        speed: Speed {
-            simulated_s: trials.iter().map(|trial| trial.simulated_s).sum(),
-            delivered: trials.iter().map(|trial| trial.delivered).sum(),
-            wall_s: trials.iter().map(|trial| trial.wall_s).sum(),
-        },
-        folder: finished.folder.path(),
-        files: &files,
-        colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
-    })
+    finished.print(arguments.format)
 }

@@ -1,14 +1,15 @@
-//! `desim schema`: the JSON Schema of scenario files.
+//! `desim schema`: the JSON Schema of scenario or study files.
 
 use std::io::{self, Write};
 
-use crate::scenario::json_schema;
+use crate::scenario::{json_schema, study_schema};
 
-/// Writes the JSON Schema of scenario files to `out`.
+/// Writes the JSON Schema of scenario files, or of study files, to `out`.
 ///
 /// # Errors
 /// If `out` cannot be written to.
-pub fn schema(out: &mut dyn Write) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, &json_schema())?;
+pub fn schema(study: bool, out: &mut dyn Write) -> io::Result<()> {
+    let schema = if study { study_schema() } else { json_schema() };
+    serde_json::to_writer_pretty(&mut *out, &schema)?;
     writeln!(out)
 }

@@ -1,6 +1,6 @@
-//! Experiments: the trials of one scenario, run in parallel, each kept as soon as it has finished.
+//! Experiments: the trials of scenarios, run in parallel, each kept as soon as it has finished.
 //!
-//! An [`Experiment`] spreads trials over threads, a trial on one thread; what a trial gives depends on its number alone,
+//! A [`Pool`] spreads the trials of one [`Experiment`] or many over threads, a trial on one thread; what a trial gives depends on its number alone,
 //! so results do not depend on how many threads there were. [`Parts`] keeps finished trials on disk until all are
 //! there, so that an interrupted experiment is taken up where it stopped.
 
@@ -8,4 +8,4 @@ mod parts;
 mod run;
 
 pub use parts::{FinishedTrial, Parts, PartsError};
-pub use run::{Ending, Experiment, ExperimentError};
+pub use run::{Ending, Experiment, ExperimentError, Pool};

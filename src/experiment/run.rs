@@ -43,11 +43,16 @@ pub struct Experiment<'a> {
     pub trials: u32,
     /// Seed of them all.
     pub seed: u64,
-    /// How many run at a time.
-    pub jobs: NonZeroUsize,
     /// Where finished trials are kept.
     pub parts: &'a Parts,
-    /// Cancelled when somebody wants the experiment to stop.
+}
+
+/// Threads that run trials.
+#[derive(Debug)]
+pub struct Pool<'a> {
+    /// How many trials run at a time.
+    pub jobs: NonZeroUsize,
+    /// Cancelled when somebody wants the trials to stop.
     pub stop: &'a CancellationToken,
 }
 
@@ -61,9 +66,11 @@ impl Experiment<'_> {
     fn missing(&self) -> Vec<u32> {
         self.parts.missing(self.trials, self.seed)
     }
+}
 
-    /// Runs those trials that are not kept yet, keeps each as soon as it has finished, and tells `finished` of it on
-    /// the calling thread.
+impl Pool<'_> {
+    /// Runs those trials of `experiments` that are not kept yet, keeps each as soon as it has finished, and tells `finished` of
+    /// it on the calling thread, with the place of its experiment. Experiments take turns, so that they come on alike.
     ///
     /// `run` is called once a trial, on any thread; it should watch the token and give up early, with whatever error,
     /// when that is cancelled. No trial starts then.
@@ -72,32 +79,45 @@ impl Experiment<'_> {
     /// The first error, after which the other trials under way are dropped.
     pub fn run<E: std::error::Error + Send + 'static>(
         &self,
-        run: impl Fn(u32) -> Result<TrialRecord, E> + Sync,
-        mut finished: impl FnMut(&FinishedTrial),
+        experiments: &[Experiment],
+        run: impl Fn(usize, u32) -> Result<TrialRecord, E> + Sync,
+        mut finished: impl FnMut(usize, &FinishedTrial),
     ) -> Result<Ending, ExperimentError<E>> {
-        let run = |trial| {
+        let run = |(experiment, trial): (usize, u32)| {
             let start = Instant::now();
-            let record = run(trial).map_err(|source| ExperimentError::Trial { trial, source })?;
+            let record = run(experiment, trial).map_err(|source| ExperimentError::Trial { trial, source })?;
             let part = FinishedTrial {
                 wall_s: start.elapsed().as_secs_f64(),
                 record,
             };
-            self.parts.save(&part)?;
-            tracing::info!(trial, wall_s = part.wall_s, steps = part.record.steps, "finished");
-            Ok(part)
+            experiments[experiment].parts.save(&part)?;
+            tracing::info!(
+                experiment,
+                trial,
+                wall_s = part.wall_s,
+                steps = part.record.steps,
+                "finished"
+            );
+            Ok((experiment, part))
         };
-        let missing = self.missing();
-        run_trials(&missing, self.jobs, self.stop, run, |part| finished(&part))
+        let mut missing: Vec<(usize, u32)> = Vec::new();
+        for (place, experiment) in experiments.iter().enumerate() {
+            missing.extend(experiment.missing().into_iter().map(|trial| (place, trial)));
+        }
+        missing.sort_by_key(|&(_, trial)| trial);
+        run_trials(&missing, self.jobs, self.stop, run, |(experiment, part)| {
+            finished(experiment, &part);
+        })
     }
 }
 
 /// Runs `trials` on `jobs` threads and hands what each leaves to `finished`, on the calling thread, in the order in
 /// which they finish. The first error cancels `stop`; errors after a cancellation are those of dropped trials.
-fn run_trials<T: Send, E: Send>(
-    trials: &[u32],
+fn run_trials<J: Copy + Sync, T: Send, E: Send>(
+    trials: &[J],
     jobs: NonZeroUsize,
     stop: &CancellationToken,
-    run: impl Fn(u32) -> Result<T, E> + Sync,
+    run: impl Fn(J) -> Result<T, E> + Sync,
     mut finished: impl FnMut(T),
 ) -> Result<Ending, E> {
     let next = AtomicUsize::new(0);
@@ -132,11 +152,11 @@ fn run_trials<T: Send, E: Send>(
 }
 
 /// Takes the next trial as long as there is one, none of its own has failed, and nobody has cancelled.
-fn work<T, E>(
-    trials: &[u32],
+fn work<J: Copy, T, E>(
+    trials: &[J],
     next: &AtomicUsize,
     stop: &CancellationToken,
-    run: &(impl Fn(u32) -> Result<T, E> + Sync),
+    run: &(impl Fn(J) -> Result<T, E> + Sync),
     results: &mpsc::Sender<Result<T, E>>,
 ) {
     while !stop.is_cancelled() {
@@ -177,7 +197,7 @@ mod tests {
     fn no_trial_at_all_is_a_finished_experiment() {
         let stop = CancellationToken::new();
         assert_eq!(
-            run_trials(&[], jobs(2), &stop, Ok::<_, ()>, |_| ()),
+            run_trials(&[], jobs(2), &stop, Ok::<u32, ()>, |_| ()),
             Ok(Ending::Finished)
         );
     }

@@ -25,6 +25,7 @@ pub struct Folder {
 
 /// What is in a folder.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)] // There is one a folder.
 pub enum Contents {
     /// Nothing, or there is no such folder yet.
     Nothing,
@@ -222,14 +223,15 @@ pub fn json(value: &impl serde::Serialize) -> Vec<u8> {
 }
 
 /// An error to leave alone: what was to be deleted is not there.
-fn gone(result: io::Result<()>) -> io::Result<()> {
+pub fn gone(result: io::Result<()>) -> io::Result<()> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         other => other,
     }
 }
 
-fn measure(path: &Path) -> io::Result<FileEntry> {
+/// Length and hash of a file, however large.
+pub fn measure(path: &Path) -> io::Result<FileEntry> {
     let mut file = File::open(path)?;
     let (mut hash, mut bytes, mut chunk) = (Xxh3::new(), 0, vec![0; 1 << 16]);
     loop {

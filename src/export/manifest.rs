@@ -14,6 +14,9 @@ pub struct Manifest {
     pub version: String,
     /// Commit that it was built from, where the build was told (environment variable `DESIM_COMMIT`).
     pub commit: Option<String>,
+    /// The question that the scenario asks: the first comment of its file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub question: Option<String>,
     /// Whether every trial has finished.
     pub finished: bool,
     /// The whole scenario, defaults and overrides worked in.
@@ -60,6 +63,7 @@ impl Manifest {
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: option_env!("DESIM_COMMIT").map(str::to_owned),
+            question: None,
             finished: false,
             scenario: serde_json::to_value(scenario).expect("a scenario holds only what JSON can write"),
             seed: scenario.seed,
@@ -76,28 +80,63 @@ impl Manifest {
         if self.version != asked.version {
             lines.push(format!("desim {} there, {} now", self.version, asked.version));
         }
-        compare("", &self.scenario, &asked.scenario, &mut lines);
-        if !self.finished {
-            lines.retain(|line| !line.starts_with("trials: "));
-        }
+        let fields = self.scenario_differences(asked).into_iter();
+        let counts = |field: &Difference| self.finished || field.path != "trials";
+        lines.extend(fields.filter(counts).map(|difference| difference.line()));
         lines
+    }
+
+    /// The values of the scenarios of two results that differ.
+    #[must_use]
+    pub fn scenario_differences(&self, other: &Self) -> Vec<Difference> {
+        let mut found = Vec::new();
+        compare("", &self.scenario, &other.scenario, &mut found);
+        found
+    }
+
+    /// The version of desim and the commit that it was built from, where that is known.
+    #[must_use]
+    pub fn made_by(&self) -> String {
+        let commit = self.commit.as_ref().map(|commit| format!(" ({commit})"));
+        format!("desim {}{}", self.version, commit.unwrap_or_default())
     }
 }
 
-/// Adds a line for each value that differs between `there` and `now`.
-fn compare(path: &str, there: &Value, now: &Value, lines: &mut Vec<String>) {
-    match (there, now) {
+/// A value of a scenario that is another one in another scenario.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Where it is, such as `radio.range`.
+    pub path: String,
+    /// The one and the other, as JSON.
+    pub values: [String; 2],
+}
+
+impl Difference {
+    /// As a line for people.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let [there, now] = &self.values;
+        format!("{}: {there} there, {now} now", self.path)
+    }
+}
+
+/// Adds each value that differs between `one` and `other`.
+pub fn compare(path: &str, one: &Value, other: &Value, found: &mut Vec<Difference>) {
+    match (one, other) {
         (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
-            for ((key, there), now) in a.iter().zip(b.values()) {
+            for ((key, one), other) in a.iter().zip(b.values()) {
                 let path = if path.is_empty() {
                     key.clone()
                 } else {
                     format!("{path}.{key}")
                 };
-                compare(&path, there, now, lines);
+                compare(&path, one, other, found);
             }
         }
-        _ if there != now => lines.push(format!("{path}: {there} there, {now} now")),
+        _ if one != other => found.push(Difference {
+            path: path.to_owned(),
+            values: [one.to_string(), other.to_string()],
+        }),
         _ => {}
     }
 }
@@ -111,6 +150,7 @@ mod tests {
         Manifest {
             version: "1".into(),
             commit: None,
+            question: None,
             finished,
             scenario,
             seed: 1,

@@ -3,10 +3,16 @@
 //! [`write()`] fills a [`Folder`]; the folder's [`Manifest`] says what it is the result of. Every file but the manifest
 //! depends on the scenario, the seed and the version alone, byte for byte.
 
+#[cfg(feature = "parquet")]
+mod comparison_table;
 mod folder;
 mod manifest;
 mod names;
 mod picture;
+#[cfg_attr(not(feature = "parquet"), path = "no_read.rs")]
+mod read;
+mod results;
+mod study;
 #[cfg(feature = "parquet")]
 mod table;
 #[cfg_attr(not(feature = "parquet"), path = "no_tables.rs")]
@@ -14,8 +20,11 @@ mod tables;
 mod write;
 
 pub use folder::{Contents, Folder, FolderError, json};
-pub use manifest::{FileEntry, Manifest, TrialEntry};
+pub use manifest::{Difference, FileEntry, Manifest, TrialEntry};
 pub use names::Names;
 pub use picture::Scene;
+pub use read::NameLists;
+pub use results::{PAGE, Results, ResultsError, keep_page};
+pub use study::{StudyFolder, StudyManifest};
 pub use tables::Tables;
 pub use write::{Pictures, WriteError, write};

@@ -1,6 +1,7 @@
 //! What a protocol calls its topics and roles.
 
 use crate::protocol::Protocol;
+use crate::protocol::detector::DetectorConfig;
 
 /// Names of topics and roles, by which records number them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,11 +13,11 @@ pub struct Names {
 }
 
 impl Names {
-    /// The names that protocol `P` declares.
+    /// The names of what protocol `P` has in use where robots run `detector`.
     #[must_use]
-    pub const fn of<P: Protocol>() -> Self {
+    pub fn of<P: Protocol>(detector: &DetectorConfig) -> Self {
         Self {
-            topics: P::TOPICS,
+            topics: P::topics(detector),
             roles: P::ROLES,
         }
     }

@@ -1,6 +1,6 @@
 //! From the finished trials of an experiment to its results folder.
 
-use super::folder::{Folder, FolderError, SUMMARY, failed, json};
+use super::folder::{Contents, Folder, FolderError, SUMMARY, failed, json};
 use super::manifest::{Manifest, TrialEntry};
 use super::names::Names;
 use super::picture::Scene;
@@ -44,9 +44,13 @@ pub fn write(
     pictures: Pictures,
 ) -> Result<(Summary, Manifest), WriteError> {
     let (names, scene) = (names(scenario), scene(scenario));
+    let declared = match folder.contents()? {
+        Contents::Results(declared) => declared,
+        Contents::Nothing => Manifest::new(scenario),
+    };
     let mut manifest = Manifest {
         finished: true,
-        ..Manifest::new(scenario)
+        ..declared
     };
     let mut files: Vec<String> = Tables::FILES.map(str::to_owned).into();
     let mut tables = Tables::create(parts.dir(), names, scene.targets.len()).map_err(failed("write", parts.dir()))?;
@@ -104,8 +108,9 @@ fn entry(part: &FinishedTrial) -> TrialEntry {
 /// What the scenario's protocol calls its topics and roles.
 fn names(scenario: &Scenario) -> Names {
     match &scenario.protocol {
-        ProtocolConfig::Backbone(_) => Names::of::<crate::protocol::backbone::Backbone>(),
-        ProtocolConfig::Heartbeat => Names::of::<crate::protocol::heartbeat::Heartbeat>(),
+        ProtocolConfig::Backbone(_) => Names::of::<crate::protocol::backbone::Backbone>(&scenario.detector),
+        ProtocolConfig::Heartbeat => Names::of::<crate::protocol::heartbeat::Heartbeat>(&scenario.detector),
+        ProtocolConfig::Rumor(_) => Names::of::<crate::protocol::rumor::Rumor>(&scenario.detector),
     }
 }
 
@@ -117,7 +122,7 @@ fn scene(scenario: &Scenario) -> Scene {
         range: scenario.radio.range.get(),
         targets: match &scenario.protocol {
             ProtocolConfig::Backbone(config) => config.targets().into_iter().map(|(place, _)| place).collect(),
-            ProtocolConfig::Heartbeat => Vec::new(),
+            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => Vec::new(),
         },
         roles: names(scenario).roles,
     }

@@ -144,6 +144,9 @@ pub enum Effect {
 }
 
 impl Effect {
+    /// Every effect.
+    pub const ALL: [Self; 4] = [Self::Silence, Self::Crash, Self::Mute, Self::Deaf];
+
     /// The name that reports and tables use.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -195,6 +195,10 @@ impl Faults {
     #[inline]
     #[must_use]
     pub fn health(&self, robot: ActorId) -> Health {
+        // Every wake asks: where no robot ever fails, nothing is looked up.
+        if self.robots.is_empty() {
+            return Health::WELL;
+        }
         self.ailments[robot.index()].health()
     }
 

@@ -11,6 +11,8 @@ use crate::quantity::NonNegative;
 pub struct MetricsConfig {
     /// Seconds between samples of connectivity and positions; 0 for no samples.
     pub sample_interval: NonNegative,
+    /// Samples from one entry of the traffic's series to the next; 0 for no series.
+    pub series_every: u32,
     /// How long every target must be held with its links before the mission counts as complete, in seconds; the run then ends.
     pub hold: NonNegative,
 }
@@ -19,6 +21,7 @@ impl Default for MetricsConfig {
     fn default() -> Self {
         Self {
             sample_interval: NonNegative::new(1.0),
+            series_every: 1,
             hold: NonNegative::new(10.0),
         }
     }

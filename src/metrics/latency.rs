@@ -48,6 +48,26 @@ impl LatencyHistogram {
         self.max = self.max.max(nanos);
     }
 
+    /// A histogram still to be [`fill`](Self::fill)ed, of which least, greatest and sum in nanoseconds are known.
+    #[must_use]
+    pub fn exactly(min: u64, max: u64, sum: u128) -> Self {
+        Self {
+            sum,
+            min,
+            max,
+            ..Self::default()
+        }
+    }
+
+    /// Counts `count` latencies in the bucket from `low` to `high`, both in nanoseconds, as [`buckets`](Self::buckets) has it.
+    pub fn fill(&mut self, (low, high, count): (u64, u64, u64)) {
+        self.counts[bucket_of(low)] += count;
+        self.count += count;
+        // No more than a bound where the extremes are not known.
+        self.min = self.min.min(high);
+        self.max = self.max.max(low);
+    }
+
     /// Adds all latencies of `other`.
     pub fn merge(&mut self, other: &Self) {
         for (mine, theirs) in self.counts.iter_mut().zip(&other.counts) {
@@ -178,6 +198,14 @@ mod tests {
     #[test]
     fn the_mean_is_exact_to_rounding() {
         assert_eq!(histogram_of(&[1_000_000_000, 2_000_000_000]).mean_secs(), Some(1.5));
+    }
+
+    #[test]
+    fn a_histogram_filled_from_its_buckets_and_exact_figures_is_the_same() {
+        let histogram = histogram_of(&[3, 1_000_003, 77_000_000, 77_000_001]);
+        let mut again = LatencyHistogram::exactly(3, 77_000_001, histogram.sum_nanos());
+        histogram.buckets().for_each(|bucket| again.fill(bucket));
+        assert_eq!(again, histogram);
     }
 
     proptest! {

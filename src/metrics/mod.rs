@@ -1,15 +1,19 @@
 //! What a run leaves behind: traffic, fates, connectivity, outcome, and the statistics over trials.
 
+pub mod comparison;
 mod config;
 mod connectivity;
 pub mod detection;
 mod faults;
+pub mod figures;
 mod healing;
 mod latency;
 mod mission;
 mod record;
 mod recorder;
 mod reports;
+mod series;
+mod spread;
 pub mod statistics;
 pub mod summary;
 mod traffic;
@@ -19,9 +23,11 @@ pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget, Progress};
 pub use record::{
-    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotState, TopicFates, TrafficRow,
-    TrialRecord, Volume,
+    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotBytes, RobotState, SeriesEntry,
+    TopicFates, TrafficRow, TrialRecord, Volume,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
+pub use spread::RumorSpread;
 pub use statistics::Estimate;
 pub use summary::Summary;
+pub use traffic::HeaderBytes;

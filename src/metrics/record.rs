@@ -11,6 +11,7 @@ use crate::radio::LossCause;
 
 use super::detection::{DetectionRecord, StatusTrace};
 use super::latency::LatencyHistogram;
+use super::spread::RumorSpread;
 
 /// Everything that one trial leaves behind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,8 +44,12 @@ pub struct TrialRecord {
     pub faults: Vec<FaultEpisode>,
     /// Every failure of a robot that worked for a target, and how the target got its links back, in order of time.
     pub healing: Vec<HealingEpisode>,
+    /// How each rumour spread, where the protocol has any.
+    pub spread: Vec<RumorSpread>,
     /// Connectivity at each sample time.
     pub connectivity: Vec<ConnectivitySample>,
+    /// Traffic over time, in order of time.
+    pub series: Vec<SeriesEntry>,
     /// Robots at the end, in order of ids.
     pub robots: Vec<RobotState>,
     /// Positions at each sample time (metres, robot by robot), as f32: for pictures.
@@ -69,6 +74,18 @@ impl TrialRecord {
     pub fn connected_share(&self) -> Option<f64> {
         let connected = self.connectivity.iter().filter(|sample| sample.components == 1).count();
         (!self.connectivity.is_empty()).then(|| connected as f64 / self.connectivity.len() as f64)
+    }
+
+    /// Each robot's bytes a control step, of whatever `bytes` takes from its rows; a robot without traffic counts with 0.
+    #[must_use]
+    pub fn bytes_per_step(&self, bytes: impl Fn(&TrafficRow) -> u64) -> Vec<f64> {
+        let mut sums = vec![0; self.robots.len()];
+        for row in &self.traffic {
+            sums[row.robot.index()] += bytes(row);
+        }
+        // A run too short for a single control step lasts no longer than one.
+        let steps = self.steps.max(1) as f64;
+        sums.into_iter().map(|sum| sum as f64 / steps).collect()
     }
 
     /// The robots that failed at some time, each once, in order of ids.
@@ -199,7 +216,8 @@ impl FaultKind {
 /// How a mission ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// Every target was held with its links from this control step on, for the time that the scenario asks.
+    /// Every target was held with its links, or every live robot knew every rumour, from this control step on, for the time
+    /// that the scenario asks.
     Completed {
         /// The first such control step, from 0.
         step: u64,
@@ -292,6 +310,8 @@ pub struct TrafficRow {
     pub sent: Volume,
     /// What reached it.
     pub received: Volume,
+    /// The part of it that told it nothing new, as far as the protocol says.
+    pub duplicate: Volume,
     /// What was meant for it and lost, by cause in the order of [`LossCause::ALL`].
     pub lost: [Volume; LossCause::ALL.len()],
 }
@@ -309,6 +329,32 @@ pub struct ConnectivitySample {
     pub roles: Vec<u32>,
     /// Vertex-disjoint chains from each target's worker to the root, nl(t) of paper eq. 5, in order of targets.
     pub links: Vec<u32>,
+}
+
+/// Traffic from one sample to the next, headers included: on each topic, in order of topics, then on all together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeriesEntry {
+    /// Since when: a sample.
+    pub since: SimTime,
+    /// Until when: a later sample.
+    pub at: SimTime,
+    /// Sent, a frame counted once however many robots hear it.
+    pub sent: Vec<RobotBytes>,
+    /// Received.
+    pub received: Vec<RobotBytes>,
+}
+
+/// Bytes of robots, and how they spread over them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RobotBytes {
+    /// Of all robots together.
+    pub total: u64,
+    /// Of the robot with the fewest.
+    pub min: u64,
+    /// Median over robots.
+    pub median: f64,
+    /// Of the robot with the most.
+    pub max: u64,
 }
 
 /// A robot at the end of a trial.

@@ -129,7 +129,13 @@ impl World {
     #[inline]
     #[must_use]
     pub fn position(&self, id: ActorId, at: SimTime) -> Vec2 {
-        self.positions[id.index()] + self.velocities[id.index()] * self.elapsed(at)
+        let position = self.positions[id.index()];
+        // In a swarm at rest velocities are not even looked at.
+        if self.moving {
+            position + self.velocities[id.index()] * self.elapsed(at)
+        } else {
+            position
+        }
     }
 
     /// Where robot `id` is at instant `at`, from the last tick to the next, and which way it faces.

@@ -1,34 +1,55 @@
-//! Heartbeats and status timeouts on their own: the workload on which failure detectors and drivers are measured.
+//! Heartbeats and a failure detector on their own: the workload on which detectors and drivers are measured.
 //!
-//! Every robot broadcasts a 4-byte status and believes that a neighbour is down when it has not heard it for the
-//! timeout. Robots stand still.
+//! Every robot broadcasts a 4-byte status, and its detector believes what it believes of those that it hears. Robots stand
+//! still, or wander.
 
+use std::convert::Infallible;
+use std::marker::PhantomData;
 use std::rc::Rc;
 
 use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
-use super::detector::{Detector, DetectorConfig};
-use super::gossip::GossipConfig;
+use super::detector::{Carried, Circumstances, Detector, DetectorConfig, Monitored, Probe, Sign};
+use super::gossip::{GossipConfig, Turns};
+use super::wander::{Ground, Wander};
 use super::{CodecError, Input, Output, Protocol, Topic, Wake};
-use crate::engine::{SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, Streams};
 
 /// Settings that all robots share.
 #[derive(Debug)]
 pub struct Settings {
-    /// Control steps from one status to the next.
-    status_every: u64,
+    status_turns: Turns,
     detector: DetectorConfig,
+    circumstances: Circumstances,
+    ground: Ground,
 }
 
 impl Settings {
-    /// From a scenario's gossip and detector settings.
+    /// From a scenario's gossip and detector settings, for a swarm of `robots`, in a trial with these `streams`.
     #[must_use]
-    pub fn new(gossip: &GossipConfig, detector: &DetectorConfig, control_period: Span) -> Self {
+    pub fn new(
+        gossip: &GossipConfig,
+        detector: &DetectorConfig,
+        control_period: Span,
+        robots: usize,
+        streams: Streams,
+    ) -> Self {
         Self {
-            status_every: gossip.status.steps(control_period),
+            status_turns: Turns::new(gossip.status.timing(control_period), 0, streams),
             detector: detector.clone(),
+            circumstances: Circumstances {
+                robots,
+                status_interval: gossip.status.longest_pause(control_period),
+            },
+            ground: Ground::still(),
         }
+    }
+
+    /// The same, for robots that move on `ground`.
+    #[must_use]
+    pub fn wandering(self, ground: Ground) -> Self {
+        Self { ground, ..self }
     }
 }
 
@@ -39,46 +60,87 @@ pub struct Status {
     pub number: u32,
 }
 
-/// One robot's heartbeat and what it believes of its neighbours.
+/// What robots say; `P` carries what their failure detector says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Message<P = Infallible> {
+    /// I am alive.
+    Status(Status),
+    /// What the failure detector says.
+    Probe(P),
+}
+
+impl<P: Carried> Monitored for Message<P> {
+    #[inline]
+    fn sign(&self) -> Sign<'_> {
+        match self {
+            Self::Status(_) => Sign::Status,
+            Self::Probe(probe) => Sign::Probe(probe.probe()),
+        }
+    }
+
+    fn probe(probe: Probe) -> Self {
+        Self::Probe(P::of(probe).expect("robots whose detector sends have messages for that"))
+    }
+}
+
+/// One robot's heartbeat and what it believes of its neighbours. Where its detector [sends](DetectorConfig::sends), `P` must
+/// be one that can carry that.
 #[derive(Debug)]
-pub struct Heartbeat {
+pub struct Heartbeat<P = Infallible> {
+    id: ActorId,
     settings: Rc<Settings>,
     control_steps: u64,
     sent: u32,
     detector: Detector,
+    wander: Wander,
+    carries: PhantomData<P>,
 }
 
-impl Heartbeat {
-    /// A robot that has heard nobody yet.
+impl<P> Heartbeat<P> {
+    /// Robot `id`, which has heard nobody yet.
     #[must_use]
-    pub fn new(settings: Rc<Settings>) -> Self {
+    pub fn new(id: ActorId, settings: Rc<Settings>) -> Self {
         Self {
-            detector: Detector::new(&settings.detector),
+            id,
+            detector: Detector::new(&settings.detector, settings.circumstances, id),
             settings,
             control_steps: 0,
             sent: 0,
+            wander: Wander::default(),
+            carries: PhantomData,
         }
     }
 }
 
-impl Protocol for Heartbeat {
-    type Message = Status;
-    type Codec = StatusCodec;
-    const TOPICS: &'static [&'static str] = &["status"];
+impl<P: Carried> Protocol for Heartbeat<P> {
+    type Message = Message<P>;
+    type Codec = MessageCodec<P>;
+    const TOPICS: &'static [&'static str] = &["status", "probe"];
     const ROLES: &'static [&'static str] = &["robot"];
     const STATUS: Option<Topic> = Some(Topic(0));
+    const PROBE: Option<Topic> = Some(Topic(1));
     const SENSES_PROXIMITY: bool = false;
 
-    fn step(&mut self, now: SimTime, input: &mut Input<Status>, output: &mut Output<Status>) {
-        for reception in &input.inbox {
-            self.detector.hear(reception, output);
-        }
+    #[inline]
+    fn topic(message: &Message<P>) -> Topic {
+        Topic(match message {
+            Message::Status(_) => 0,
+            Message::Probe(_) => 1,
+        })
+    }
+
+    fn step(&mut self, now: SimTime, input: &mut Input<Message<P>>, output: &mut Output<Message<P>>) {
+        self.detector.read(now, &input.inbox, output);
         match input.wake {
-            Wake::Timer(_) => self.detector.expire(now, output),
+            Wake::Timer(_) => self.detector.expire(now, &mut input.random, output),
             Wake::ControlStep => {
-                if self.control_steps.is_multiple_of(self.settings.status_every) {
-                    output.broadcasts.push(Status { number: self.sent });
-                    self.sent = self.sent.wrapping_add(1);
+                let settings = &self.settings;
+                output.velocity = self
+                    .wander
+                    .velocity(&settings.ground, self.id, now, input.pose.position);
+                if settings.status_turns.is_due(self.id, self.control_steps) {
+                    output.broadcasts.push(Message::Status(Status { number: self.sent }));
+                    self.sent = (self.sent + 1) % NUMBERS;
                 }
                 self.control_steps += 1;
             }
@@ -87,29 +149,77 @@ impl Protocol for Heartbeat {
     }
 }
 
-/// Four bytes, big-endian.
-#[derive(Debug, Default)]
-pub struct StatusCodec;
+/// Numbers of statuses: with fewer than 31 bits their first byte never begins a probe.
+const NUMBERS: u32 = 1 << 30;
 
-impl Encoder<Status> for StatusCodec {
+/// A status is its number in four bytes, big-endian; a probe is as its detector has it.
+#[derive(Debug)]
+pub struct MessageCodec<P>(PhantomData<P>);
+
+impl<P> Default for MessageCodec<P> {
+    fn default() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<P: Carried> Encoder<Message<P>> for MessageCodec<P> {
     type Error = CodecError;
 
-    fn encode(&mut self, status: Status, bytes: &mut BytesMut) -> Result<(), CodecError> {
-        bytes.put_u32(status.number);
+    fn encode(&mut self, message: Message<P>, bytes: &mut BytesMut) -> Result<(), CodecError> {
+        match message {
+            Message::Status(status) => bytes.put_u32(status.number),
+            Message::Probe(probe) => probe.probe().encode(bytes),
+        }
         Ok(())
     }
 }
 
-impl Decoder for StatusCodec {
-    type Item = Status;
+impl<P: Carried> Decoder for MessageCodec<P> {
+    type Item = Message<P>;
     type Error = CodecError;
 
-    fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<Status>, CodecError> {
+    fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<Message<P>>, CodecError> {
+        if let Some(first) = bytes.first().copied().filter(|first| Probe::begins_with(*first)) {
+            let refused = CodecError::Unknown {
+                field: "message kind",
+                value: first,
+            };
+            let probe = P::of(Probe::decode(bytes)?).ok_or(refused)?;
+            return Ok(Some(Message::Probe(probe)));
+        }
         if bytes.len() < 4 {
             return Ok(None);
         }
-        Ok(Some(Status {
+        Ok(Some(Message::Status(Status {
             number: bytes.get_u32(),
-        }))
+        })))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::detector::Call;
+
+    #[test]
+    fn a_message_costs_a_reception_no_more_than_its_status_where_no_detector_sends() {
+        assert_eq!(size_of::<Message>(), size_of::<Status>());
+    }
+
+    #[test]
+    fn statuses_and_probes_decode_to_themselves_and_probes_only_where_they_are_carried() {
+        let probe = Probe {
+            call: Call::Ping { to: ActorId(3) },
+            number: 7,
+            news: Vec::new(),
+        };
+        let status = Status { number: NUMBERS - 1 };
+        for message in [Message::Status(status), Message::Probe(Rc::new(probe))] {
+            let mut bytes = BytesMut::new();
+            MessageCodec::default().encode(message.clone(), &mut bytes).unwrap();
+            let alone = MessageCodec::<Infallible>::default().decode(&mut bytes.clone());
+            assert_eq!(alone.is_ok(), matches!(message, Message::Status(_)));
+            assert_eq!(MessageCodec::default().decode(&mut bytes).unwrap(), Some(message));
+        }
     }
 }

@@ -4,20 +4,21 @@
 //! is near; it answers with messages, a velocity, timers, and notes for the metrics. It never sees the radio, the
 //! queue or another robot.
 
-use std::rc::Rc;
-
 use rand_philox::Philox;
 use tokio_util::codec::{Decoder, Encoder};
 
 use crate::engine::{ActorId, Process, SimTime};
 use crate::geometry::{Pose, Vec2};
+use detector::DetectorConfig;
 
 pub mod backbone;
 pub mod control;
 pub mod detector;
 pub mod gossip;
 pub mod heartbeat;
-mod row_index;
+mod robot_table;
+pub mod rumor;
+pub mod wander;
 
 /// Index of a topic in [`Protocol::TOPICS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,19 +34,31 @@ pub struct TimerId(pub u8);
 
 /// A protocol as one robot runs it.
 pub trait Protocol: Sized + 'static {
-    /// What robots say to each other, decoded.
-    type Message: std::fmt::Debug + 'static;
+    /// What robots say to each other, decoded. Each receiver gets a clone: keep what is large behind an `Rc`.
+    type Message: Clone + std::fmt::Debug + 'static;
     /// Makes payload bytes of messages and messages of payload bytes.
     type Codec: Encoder<Self::Message, Error = CodecError> + Decoder<Item = Self::Message, Error = CodecError> + Default;
-    /// Names of the topics, by which traffic is accounted.
+    /// Names of the topics, by which traffic is accounted; [`topics`](Self::topics) are those in use.
     const TOPICS: &'static [&'static str];
     /// Names of the roles, by which traffic is accounted. A robot starts in the first.
     const ROLES: &'static [&'static str];
     /// The topic that the robots' failure detector listens to, if they run one: its frames are followed one by one, so that
     /// a suspicion can be traced to what became of them.
     const STATUS: Option<Topic> = None;
+    /// The topic of what the robots' failure detector says, the last of them, if robots run one: it is in use where the
+    /// scenario's detector sends messages.
+    const PROBE: Option<Topic> = None;
     /// Whether robots read [`Input::proximity`]; if not, it stays empty and costs nothing.
     const SENSES_PROXIMITY: bool = true;
+
+    /// Names of the topics in use where robots run `detector`.
+    #[must_use]
+    fn topics(detector: &DetectorConfig) -> &'static [&'static str] {
+        match Self::PROBE {
+            Some(probe) if !detector.sends() => &Self::TOPICS[..usize::from(probe.0)],
+            Some(_) | None => Self::TOPICS,
+        }
+    }
 
     /// The topic that `message` belongs to: the first one, if the protocol does not say otherwise.
     fn topic(message: &Self::Message) -> Topic {
@@ -84,19 +97,38 @@ pub struct Input<M> {
     pub random: Philox,
 }
 
-/// A frame as it is shared by those that receive it: decoded once, for its bytes are the same at every receiver.
-#[derive(Debug)]
+/// How long a message is on air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MessageSize {
+    /// Its payload in bytes, headers not included.
+    pub payload_bytes: u16,
+    /// Whether it rides in a frame that another message before it began: then that one answers for the frame's header.
+    pub rides: bool,
+}
+
+impl MessageSize {
+    /// Of a message in a frame of its own.
+    #[must_use]
+    pub const fn alone(payload_bytes: u16) -> Self {
+        Self {
+            payload_bytes,
+            rides: false,
+        }
+    }
+}
+
+/// A message as its receivers get it: decoded once, for its bytes are the same at every receiver, and then copied into each
+/// inbox, so that reading an inbox is reading one stretch of memory.
+#[derive(Clone, Debug)]
 pub struct Frame<M> {
     /// Who sent it (the frame's header carries it).
     pub sender: ActorId,
-    /// Its number among the sender's frames.
+    /// Its number among the sender's messages, which is that of its frame where each has one of its own.
     pub sequence: u32,
     /// When its transmission began.
     pub sent_at: SimTime,
-    /// Its topic.
-    pub topic: Topic,
-    /// Length of its payload in bytes, header not included.
-    pub payload_bytes: u32,
+    /// How long it is.
+    pub size: MessageSize,
     /// What its payload says.
     pub message: M,
 }
@@ -107,13 +139,22 @@ pub struct Reception<M> {
     /// When it arrived.
     pub at: SimTime,
     /// The frame.
-    pub frame: Rc<Frame<M>>,
+    pub frame: Frame<M>,
     /// Where the sender was when it sent, relative to this robot then, in the arena's axes, metres: situated
     /// communication (paper section 3.1), with the scenario's noise.
     pub displacement: [f32; 2],
 }
 
 impl<M> Reception<M> {
+    /// What the metrics should know if it told its receiver nothing new on its `topic`.
+    #[must_use]
+    pub const fn duplicate(&self, topic: Topic) -> Note {
+        Note::Duplicate {
+            topic,
+            size: self.frame.size,
+        }
+    }
+
     /// [`displacement`](Self::displacement) as a vector.
     #[must_use]
     pub fn displacement(&self) -> Vec2 {
@@ -170,13 +211,39 @@ pub enum Note {
     Suspects {
         /// Which.
         robot: ActorId,
-        /// When that robot's last status arrived.
+        /// When that robot's last status arrived; with a detector that probes, its last frame.
         heard: SimTime,
         /// The newest of that robot's frames that arrived, by its number among them.
         sequence: u32,
+        /// What it goes by.
+        evidence: Evidence,
     },
     /// It believes so no longer.
     Trusts(ActorId),
+    /// It read a message that told it nothing new ([`Reception::duplicate`]), in the role that it had last reported: to be noted
+    /// before a change of role.
+    Duplicate {
+        /// Its topic.
+        topic: Topic,
+        /// How long it is.
+        size: MessageSize,
+    },
+    /// It knows this rumour since then.
+    Informed {
+        /// The rumour, from 0.
+        rumor: u16,
+        /// When it arrived, or was begun here.
+        at: SimTime,
+    },
+}
+
+/// What a suspicion goes by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Evidence {
+    /// The robot was not heard for too long.
+    Silence,
+    /// The robot did not answer probes in time, or others say so.
+    Probes,
 }
 
 /// Payload bytes that are no message of the protocol.

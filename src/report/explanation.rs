@@ -20,6 +20,9 @@ pub struct Explanation {
     pub trial: u32,
     /// The robot.
     pub robot: u32,
+    /// What the robots' failure detector went by, in a sentence, where that needs words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rule: Option<String>,
     /// When it failed.
     pub outages: Vec<Outage>,
     /// When it was suspected, in order of time.
@@ -89,6 +92,8 @@ pub enum Fate {
     UnderWay {
         /// When it was to arrive.
         arrives_s: f64,
+        /// Why it was lost on its arrival, if it was: a name of [`LossCause`].
+        lost: Option<&'static str>,
     },
     /// It arrived.
     Arrived {
@@ -111,6 +116,7 @@ impl Explanation {
             scenario: scenario.to_owned(),
             trial: record.trial,
             robot: trace.robot.0,
+            rule: None,
             outages: record
                 .faults
                 .iter()
@@ -154,6 +160,9 @@ impl Explanation {
             "",
             &format!("Robot {robot} {times} in trial {trial} of {scenario}."),
         );
+        if let Some(rule) = &self.rule {
+            paragraph(text, "", rule);
+        }
         for outage in &self.outages {
             let until = outage
                 .until_s
@@ -208,7 +217,11 @@ impl Explanation {
         let words = format!(
             "The last status to arrive had done so at {heard_s:.3} s. In the {silence:.3} s since then, none arrived, though {sent}."
         );
-        let words = if statuses.is_empty() {
+        let words = if suspicion.cause == detection::Cause::Unanswered.name() {
+            format!(
+                "It went by probes, which were not answered in time, or by what others said of them. The last frame had arrived at {heard_s:.3} s; in the {silence:.3} s since then, {sent}."
+            )
+        } else if statuses.is_empty() {
             words.replace(", though", ":")
         } else {
             words
@@ -287,12 +300,16 @@ fn explain(number: usize, suspicion: &Suspicion, trace: &StatusTrace) -> Explain
 fn status_at(observer: ActorId, status: &detection::Status, now: SimTime) -> Status {
     let fate = match status.copy_for(observer) {
         None => Fate::OutOfRange,
-        Some(copy) => match copy.fate {
-            CopyFate::Lost(cause) => Fate::Lost { cause: cause.name() },
-            CopyFate::Arrives(at) if at > now => Fate::UnderWay {
+        Some(copy) => match (copy.due, copy.fate) {
+            (Some(at), fate) if at > now => Fate::UnderWay {
                 arrives_s: at.as_secs(),
+                lost: match fate {
+                    CopyFate::Lost(cause) => Some(cause.name()),
+                    CopyFate::Arrives(_) => None,
+                },
             },
-            CopyFate::Arrives(at) => Fate::Arrived {
+            (_, CopyFate::Lost(cause)) => Fate::Lost { cause: cause.name() },
+            (_, CopyFate::Arrives(at)) => Fate::Arrived {
                 arrived_s: at.as_secs(),
                 read_s: copy.read.map(SimTime::as_secs),
             },
@@ -347,7 +364,11 @@ fn fate(status: &Status, out_of_range: &str) -> String {
     match status.fate {
         Fate::Lost { cause } => loss(cause).to_owned(),
         Fate::OutOfRange => out_of_range.to_owned(),
-        Fate::UnderWay { arrives_s } => format!("under way until {arrives_s:.3} s"),
+        Fate::UnderWay { arrives_s, lost: None } => format!("under way until {arrives_s:.3} s"),
+        Fate::UnderWay {
+            arrives_s,
+            lost: Some(cause),
+        } => format!("under way until {arrives_s:.3} s, then {}", loss(cause)),
         Fate::Arrived {
             arrived_s,
             read_s: None,

@@ -2,8 +2,15 @@
 
 use std::fmt::Write as _;
 
+use comfy_table::{ContentLineStyle, LineStyle, TableStyle};
+
 /// Columns that every line keeps within.
 pub const WIDTH: usize = 80;
+/// Tables: columns apart, a rule under the header.
+pub const RULED: TableStyle = TableStyle::new()
+    .header_lines(ContentLineStyle::none())
+    .header_separator(LineStyle::none().fill('─'))
+    .content_lines(ContentLineStyle::none());
 /// Columns of the names on the left.
 const MARGIN: usize = 14;
 
@@ -42,9 +49,11 @@ impl Page {
 
     /// A heading, after an empty line.
     pub fn heading(&mut self, words: &str) {
-        let words = self.bold(words);
         self.line("");
-        self.line(&words);
+        for line in wrap(words, WIDTH) {
+            let line = self.bold(&line);
+            self.line(&line);
+        }
     }
 
     /// A name on the left, words on the right, over as many lines as they need.
@@ -53,6 +62,22 @@ impl Page {
         for line in wrap(words, WIDTH - MARGIN - 2) {
             self.line(&format!("  {name:<MARGIN$}{line}"));
             name = "";
+        }
+    }
+
+    /// An item of a list, over as many lines as it needs, all but the first indented.
+    pub fn item(&mut self, words: &str) {
+        let mut indent = "  ";
+        for line in wrap(words, WIDTH - 4) {
+            self.line(&format!("{indent}{line}"));
+            indent = "    ";
+        }
+    }
+
+    /// Words over as many lines as they need, a little in.
+    pub fn words(&mut self, words: &str) {
+        for line in wrap(words, WIDTH - 2) {
+            self.line(&format!("  {line}"));
         }
     }
 

@@ -1,10 +1,18 @@
 //! Finished results as text for people.
 
+mod comparison;
 mod explanation;
 mod failures;
+mod html;
 mod layout;
 mod number;
+mod preflight;
+mod spread;
+mod surprises;
 mod terminal;
 
+pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
+pub use html::{PAGE_MARK, PageInput, page};
+pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};

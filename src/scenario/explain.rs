@@ -2,6 +2,7 @@
 
 use ron::error::{Error, Position, SpannedError};
 
+use super::document::Document;
 use super::lines::line_of;
 use super::path::{FieldPath, Step, field, follow, head, path_at};
 use super::shape::Shape;
@@ -31,9 +32,21 @@ pub struct Finding {
 
 /// Explains `error`, which came up when serde had `reached` this path of `root` in `text`; `whole` is false if serde
 /// could not name the last step.
-pub fn explain(error: &SpannedError, reached: &FieldPath, whole: bool, root: &Node, text: &str) -> Finding {
+pub fn explain<D: Document>(
+    error: &SpannedError,
+    reached: &FieldPath,
+    whole: bool,
+    root: &Node,
+    text: &str,
+) -> Finding {
     let span = bytes(text, error.span.start)..bytes(text, error.span.end);
-    let reader = Reader { root, text, span };
+    let reader = Reader {
+        root,
+        text,
+        span,
+        kind: D::KIND,
+        shape: D::shape(),
+    };
     match &error.code {
         Error::NoSuchStructField { expected, found, .. } => reader.unknown_field(found, expected),
         Error::NoSuchEnumVariant { expected, found, .. } => reader.unknown_variant(found, expected, reached),
@@ -56,13 +69,16 @@ struct Reader<'t> {
     root: &'t Node,
     text: &'t str,
     span: Span,
+    /// What the file holds: `Scenario`, or `Study`.
+    kind: &'static str,
+    shape: Shape<'static>,
 }
 
 impl Reader<'_> {
     fn unknown_field(&self, found: &str, known: &[&str]) -> Finding {
         let path = path_at(self.root, self.span.start, self.text);
-        let owner = owner(&path.parent());
-        let elsewhere = Shape::scenario().find(found).map(|path| path.to_string());
+        let owner = self.owner(&path.parent());
+        let elsewhere = self.shape.find(found).map(|path| path.to_string());
         let guesses: Vec<_> = nearest(found, known).into_iter().chain(elsewhere.as_deref()).collect();
         let guess = did_you_mean(&guesses);
         Finding {
@@ -75,7 +91,7 @@ impl Reader<'_> {
     }
 
     fn unknown_variant(&self, found: &str, known: &[&str], path: &FieldPath) -> Finding {
-        let expected = Shape::scenario().at(path).map(Shape::expected);
+        let expected = self.shape.at(path).map(Shape::expected);
         Finding {
             message: format!(
                 "`{path}` cannot be `{found}`{}",
@@ -90,12 +106,12 @@ impl Reader<'_> {
 
     fn missing(&self, name: &str, reached: &FieldPath) -> Finding {
         let path = reached.join(Step::Field(name.into()));
-        let shape = Shape::scenario().at(&path);
+        let shape = self.shape.at(&path);
         let expected = shape.map_or_else(String::new, |shape| format!(", {}", shape.expected()));
         let meaning = shape.and_then(Shape::meaning).unwrap_or_default();
         let place = follow(self.root, reached, self.text);
         Finding {
-            message: format!("missing field `{name}` in {}", owner(reached)),
+            message: format!("missing field `{name}` in {}", self.owner(reached)),
             help: Some(format!("add `{name}: ...`{expected}. {meaning}").trim().into()),
             path,
             span: head(place.node),
@@ -113,7 +129,7 @@ impl Reader<'_> {
             .and_then(|group| field(group, name, self.text));
         let line = first.map_or(0, |first| line_of(self.text, first.start()));
         Finding {
-            message: format!("field `{name}` is given twice in {}", owner(reached)),
+            message: format!("field `{name}` is given twice in {}", self.owner(reached)),
             help: Some(format!("remove this one or that of line {line}")),
             path,
             span: self.span.clone(),
@@ -124,8 +140,12 @@ impl Reader<'_> {
     fn wrong_name(&self, found: &str, path: &FieldPath) -> Finding {
         let (message, help) = if path.0.is_empty() {
             (
-                format!("a scenario file holds `Scenario( ... )`, not `{found}( ... )`"),
-                "write `Scenario(`".into(),
+                format!(
+                    "a {} file holds `{}( ... )`, not `{found}( ... )`",
+                    self.word(),
+                    self.kind
+                ),
+                format!("write `{}(`", self.kind),
             )
         } else {
             (
@@ -145,7 +165,7 @@ impl Reader<'_> {
     fn refused(&self, message: &str, path: &FieldPath) -> Finding {
         Finding {
             message: format!("`{path}`: {message}"),
-            help: meaning(path),
+            help: self.meaning(path),
             path: path.clone(),
             span: self.span.clone(),
             label: "out of range".into(),
@@ -156,8 +176,8 @@ impl Reader<'_> {
     fn mismatch(&self, error: &Error, path: FieldPath) -> Finding {
         if path.0.is_empty() {
             return Finding {
-                message: format!("not a scenario: {error}"),
-                help: Some("a scenario file holds `Scenario( ... )`".into()),
+                message: format!("not a {}: {error}", self.word()),
+                help: Some(format!("a {} file holds `{}( ... )`", self.word(), self.kind)),
                 path,
                 span: self.span.clone(),
                 label: "here".into(),
@@ -165,20 +185,20 @@ impl Reader<'_> {
         }
         let node = follow(self.root, &path, self.text).node;
         let found = excerpt(node, self.text);
-        let (message, help) = match expected(&path, node) {
+        let (message, help) = match self.expected(&path, node) {
             _ if has_doubled_brackets(node) => (
                 format!("`{path}` has two pairs of round brackets"),
                 Some("write one pair after the name".into()),
             ),
             Some(expected) if is_mismatch(error) && expected.len() <= SHORT => (
                 format!("`{path}` cannot be `{found}`: expected {expected}"),
-                meaning(&path),
+                self.meaning(&path),
             ),
             Some(expected) if is_mismatch(error) => (
                 format!("`{path}` cannot be `{found}`"),
                 Some(format!("expected {expected}")),
             ),
-            _ => (format!("`{path}` cannot be `{found}`: {error}"), meaning(&path)),
+            _ => (format!("`{path}` cannot be `{found}`: {error}"), self.meaning(&path)),
         };
         Finding {
             message,
@@ -190,6 +210,35 @@ impl Reader<'_> {
             },
             path,
             label: "here".into(),
+        }
+    }
+}
+
+impl Reader<'_> {
+    /// What people call the kind of file.
+    fn word(&self) -> String {
+        self.kind.to_lowercase()
+    }
+
+    /// What the field takes; of a variant that lacks its brackets, the variant with them.
+    fn expected(&self, path: &FieldPath, node: &Node) -> Option<String> {
+        let shape = self.shape.at(path)?;
+        match path.0.last() {
+            Some(Step::Variant(name)) if node.group.is_none() => Some(format!("`{}`", shape.in_variant(name))),
+            _ => Some(shape.expected()),
+        }
+    }
+
+    fn meaning(&self, path: &FieldPath) -> Option<String> {
+        let text = self.shape.at(path)?.meaning()?;
+        Some(format!("`{path}`: {text}"))
+    }
+
+    fn owner(&self, path: &FieldPath) -> String {
+        if path.plain().0.is_empty() {
+            format!("the {}", self.word())
+        } else {
+            format!("`{path}`")
         }
     }
 }
@@ -207,34 +256,12 @@ fn is_mismatch(error: &Error) -> bool {
     )
 }
 
-/// What the field takes; of a variant that lacks its brackets, the variant with them.
-fn expected(path: &FieldPath, node: &Node) -> Option<String> {
-    let shape = Shape::scenario().at(path)?;
-    match path.0.last() {
-        Some(Step::Variant(name)) if node.group.is_none() => Some(format!("`{}`", shape.in_variant(name))),
-        _ => Some(shape.expected()),
-    }
-}
-
 /// `Name((...))`.
 fn has_doubled_brackets(node: &Node) -> bool {
     let items = node.group.as_ref().map_or(&[][..], |group| &group.items);
     match items {
         [only] => node.name.is_some() && only.key.is_none() && only.value.is_bare_struct(),
         _ => false,
-    }
-}
-
-fn meaning(path: &FieldPath) -> Option<String> {
-    let text = Shape::scenario().at(path)?.meaning()?;
-    Some(format!("`{path}`: {text}"))
-}
-
-fn owner(path: &FieldPath) -> String {
-    if path.plain().0.is_empty() {
-        "the scenario".into()
-    } else {
-        format!("`{path}`")
     }
 }
 

@@ -18,6 +18,8 @@ pub const ROBOT_STEPS: f64 = 1e10;
 pub const SAMPLED_POSITIONS: f64 = 1e8;
 /// Copies of frames under way at once: robots times robots in range times messages within a latency.
 pub const COPIES: f64 = 1e8;
+/// Settings of a study.
+pub const SETTINGS: usize = 1000;
 /// Bytes of a scenario file.
 pub const FILE: u64 = 64 << 20;
 /// Diagnostics of one file: more are of no help.

@@ -7,10 +7,13 @@
 //! own, `explain` and `shape` say what would be right, `report` shows it.
 
 mod checks;
+mod detector;
+mod document;
 mod explain;
 mod file;
 #[cfg(test)]
 mod generated;
+mod gossip;
 mod limits;
 mod lines;
 mod overrides;
@@ -19,6 +22,7 @@ mod read;
 mod report;
 mod shape;
 mod source;
+mod study;
 mod token;
 mod tree;
 
@@ -26,17 +30,26 @@ pub use file::{contents, json_schema, load, question, to_ron};
 pub use overrides::Override;
 pub use read::parse;
 pub use report::{Diagnostic, Place, Report, Style};
+pub use study::{
+    DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
+    study_schema,
+};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::engine::Span;
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
-use crate::protocol::backbone::BackboneConfig;
+use crate::protocol::Protocol as _;
+use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
-use crate::protocol::detector::DetectorConfig;
+use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
+use crate::protocol::heartbeat::Heartbeat;
+use crate::protocol::rumor::{Rumor, RumorConfig};
+use crate::protocol::wander::WanderConfig;
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
 
@@ -69,7 +82,10 @@ pub struct Scenario {
     pub control: ControlConfig,
     /// What robots run.
     pub protocol: ProtocolConfig,
-    /// How often robots repeat what they gossip.
+    /// How robots move whose protocol has no motion of its own: not at all by default.
+    #[serde(default)]
+    pub wander: WanderConfig,
+    /// How robots repeat what they gossip.
     #[serde(default)]
     pub gossip: GossipConfig,
     /// When a robot believes that a neighbour is down.
@@ -84,6 +100,18 @@ pub struct Scenario {
     /// What is measured.
     #[serde(default)]
     pub metrics: MetricsConfig,
+}
+
+impl Scenario {
+    /// What its failure detector is told of the swarm.
+    #[must_use]
+    pub fn circumstances(&self) -> Circumstances {
+        let period = Span::from_secs(self.control.period.get());
+        Circumstances {
+            robots: self.swarm.robots as usize,
+            status_interval: self.gossip.status.longest_pause(period),
+        }
+    }
 }
 
 fn one_trial() -> u32 {
@@ -111,6 +139,20 @@ pub struct SwarmConfig {
 pub enum ProtocolConfig {
     /// The paper's failure-tolerant connectivity backbone.
     Backbone(BackboneConfig),
-    /// Status broadcasts and timeouts alone, on robots that stand still.
+    /// Status broadcasts and timeouts alone.
     Heartbeat,
+    /// Rumours that spread, until all robots know all of them.
+    Rumor(RumorConfig),
+}
+
+impl ProtocolConfig {
+    /// What the protocol calls its topics.
+    #[must_use]
+    pub fn topics(&self) -> &'static [&'static str] {
+        match self {
+            Self::Backbone(_) => Backbone::TOPICS,
+            Self::Heartbeat => <Heartbeat>::TOPICS,
+            Self::Rumor(_) => Rumor::TOPICS,
+        }
+    }
 }

@@ -13,6 +13,9 @@ use super::tree::{self, Node};
 /// A value of a scenario, given beside its file as `path=value`, such as `radio.loss=Bernoulli(0.3)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Override {
+    /// Where it is given: `--set`, or the name of a study file.
+    name: Arc<str>,
+    /// All of the text that it stands in.
     text: Arc<str>,
     path: FieldPath,
     /// Where each step of the path stands in the text.
@@ -20,6 +23,9 @@ pub struct Override {
     /// Where the value stands in the text.
     value: Span,
 }
+
+/// What overrides of the command line are given by.
+const COMMAND_LINE: &str = "--set";
 
 impl FromStr for Override {
     type Err = Report;
@@ -71,6 +77,7 @@ impl FromStr for Override {
         };
         let value = value + node.span.start..value + node.span.end;
         Ok(Self {
+            name: COMMAND_LINE.into(),
             text,
             path,
             steps,
@@ -87,7 +94,31 @@ struct Misfit {
 }
 
 impl Override {
-    /// As it was given.
+    /// The override that stands in a larger text, the file `name`: its path in `path`, its value in `value`. `None` if that is no
+    /// path of a field.
+    #[must_use]
+    pub fn within(name: &str, text: &Arc<str>, path: &Span, value: &Span) -> Option<Self> {
+        let mut given = Self {
+            name: name.into(),
+            text: Arc::clone(text),
+            path: FieldPath::default(),
+            steps: Vec::new(),
+            value: value.clone(),
+        };
+        for (part, start) in parts(&text[path.clone()]) {
+            given.path.0.push(Step::parse(part)?);
+            given.steps.push(path.start + start..path.start + start + part.len());
+        }
+        Some(given)
+    }
+
+    /// Where it is given: `--set`, or the name of a file.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text that it stands in: as it was given, or a whole file.
     #[must_use]
     pub fn text(&self) -> &Arc<str> {
         &self.text
@@ -96,7 +127,15 @@ impl Override {
     /// What a message about this override begins with.
     #[must_use]
     pub fn prefix(&self) -> String {
-        format!("--set {}: ", self.text)
+        if self.is_of_command_line() {
+            format!("--set {}: ", self.text)
+        } else {
+            String::new()
+        }
+    }
+
+    fn is_of_command_line(&self) -> bool {
+        *self.name == *COMMAND_LINE
     }
 
     /// Works the override, the `index`th, into `source`. `resolved` is the whole scenario with its defaults, where the
@@ -119,7 +158,12 @@ impl Override {
                 message: format!("{}{}", self.prefix(), misfit.message),
                 help: Some(misfit.help),
                 path: Some(self.path.to_string()),
-                place: Some(Place::new("--set", &self.text, self.steps[misfit.step].clone(), "here")),
+                place: Some(Place::new(
+                    &self.name,
+                    &self.text,
+                    self.steps[misfit.step].clone(),
+                    "here",
+                )),
             })
         })
     }
@@ -179,7 +223,11 @@ impl Edit<'_> {
         Misfit {
             step,
             message,
-            help: format!("set the whole of it: --set {parent}=..."),
+            help: if self.given.is_of_command_line() {
+                format!("set the whole of it: --set {parent}=...")
+            } else {
+                format!("set the whole of it: {parent:?}", parent = parent.to_string())
+            },
         }
     }
 

@@ -1,13 +1,14 @@
 //! Reads scenario text. Where a field is wrong, it is reported, blanked out, and the rest is read again, so that one
 //! pass names everything that is wrong.
 
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 use ron::error::{Error, SpannedError};
 use ron::extensions::Extensions;
-use serde::Deserialize;
 
-use super::checks::{Problem, problems};
+use super::checks::Problem;
+use super::document::Document;
 use super::explain::{Finding, explain, nearest};
 use super::overrides::Override;
 use super::path::{FieldPath, Step, field_at, follow, head, path_at};
@@ -15,7 +16,7 @@ use super::report::{Diagnostic, Place, Report};
 use super::source::{Source, blank};
 use super::token::Span;
 use super::tree::{self, MAX_DEPTH};
-use super::{Scenario, limits, to_ron};
+use super::{Scenario, limits};
 
 /// How scenario files are read and written: variants hold their fields without a second pair of brackets.
 pub fn options() -> ron::Options {
@@ -29,28 +30,37 @@ pub fn options() -> ron::Options {
 /// # Errors
 /// Everything that is wrong with it.
 pub fn parse(name: &str, text: &str, overrides: &[Override]) -> Result<Scenario, Report> {
+    document(name, text, overrides)
+}
+
+/// Reads the document in `text`, the contents of the file `name`, with `overrides` worked in, in order.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub(super) fn document<D: Document>(name: &str, text: &str, overrides: &[Override]) -> Result<D, Report> {
     let mut reader = Reader {
         name,
         file: text.into(),
         overrides,
         source: Source::new(text),
         diagnostics: Vec::new(),
+        document: PhantomData::<D>,
     };
     for (index, given) in overrides.iter().enumerate() {
-        let resolved = typed(reader.source.text()).ok().map(|scenario| to_ron(&scenario));
+        let resolved = typed(reader.source.text()).ok().map(|document: D| document.to_ron());
         if let Err(misfit) = given.apply(index, &mut reader.source, resolved.as_deref()) {
             reader.diagnostics.extend(misfit.diagnostics);
         }
     }
-    let scenario = reader.scenario();
-    match scenario {
-        Some(scenario) if reader.diagnostics.is_empty() => Ok(scenario),
+    let document = reader.document();
+    match document {
+        Some(document) if reader.diagnostics.is_empty() => Ok(document),
         _ => Err(reader.report()),
     }
 }
 
 /// What serde makes of `text`.
-pub(super) fn typed(text: &str) -> Result<Scenario, Box<Failure>> {
+pub(super) fn typed<D: Document>(text: &str) -> Result<D, Box<Failure>> {
     let at_start = |error: SpannedError| {
         Box::new(Failure {
             error,
@@ -60,8 +70,8 @@ pub(super) fn typed(text: &str) -> Result<Scenario, Box<Failure>> {
     };
     let mut reader = ron::Deserializer::from_str_with_options(text, &options()).map_err(at_start)?;
     let mut track = serde_path_to_error::Track::new();
-    let read = Scenario::deserialize(serde_path_to_error::Deserializer::new(&mut reader, &mut track));
-    let read = read.and_then(|scenario| reader.end().map(|()| scenario));
+    let read = D::deserialize(serde_path_to_error::Deserializer::new(&mut reader, &mut track));
+    let read = read.and_then(|document| reader.end().map(|()| document));
     read.map_err(|code| {
         let path = track.path();
         let unknown = |segment: &_| matches!(segment, serde_path_to_error::Segment::Unknown);
@@ -85,36 +95,29 @@ pub(super) struct Failure {
 enum Repair {
     /// Without this field.
     LeaveOut(Span),
-    /// With this field, at the end of the scenario.
+    /// With this field, at the end of the document.
     Add(usize, String),
 }
 
-/// Fields that every scenario must have, as they are read on where one is missing: nothing is reported of them.
-const STAND_INS: [(&str, &str); 4] = [
-    ("name", "name: \"scenario\""),
-    ("time_limit", "time_limit: 100.0"),
-    ("swarm", "swarm: (robots: 10, deploy: Uniform)"),
-    ("protocol", "protocol: Backbone(targets: Ring(count: 1, radius: 1.0))"),
-];
-
-struct Reader<'a> {
+struct Reader<'a, D> {
     name: &'a str,
     file: Arc<str>,
     overrides: &'a [Override],
     source: Source,
     diagnostics: Vec<Diagnostic>,
+    document: PhantomData<D>,
 }
 
-impl Reader<'_> {
-    /// The scenario, or what is left of it without its faults, whose diagnostics are kept.
-    fn scenario(&mut self) -> Option<Scenario> {
+impl<D: Document> Reader<'_, D> {
+    /// The document, or what is left of it without its faults, whose diagnostics are kept.
+    fn document(&mut self) -> Option<D> {
         let mut text = self.source.text().to_owned();
         let mut blanked = Vec::new();
         loop {
             match typed(&text) {
-                Ok(scenario) => {
-                    self.check(&scenario, &blanked);
-                    return Some(scenario);
+                Ok(document) => {
+                    self.check(&document, &blanked);
+                    return Some(document);
                 }
                 Err(failure) => match self.fault(&failure, &text, &mut blanked)? {
                     Repair::LeaveOut(span) => blank(&mut text, &span),
@@ -131,7 +134,7 @@ impl Reader<'_> {
             self.form(&faults, text);
             return None;
         };
-        let finding = explain(&failure.error, &failure.path, failure.whole, &root, text);
+        let finding = explain::<D>(&failure.error, &failure.path, failure.whole, &root, text);
         let missing = matches!(failure.error.code, Error::MissingStructField { .. });
         let field = if missing {
             follow(&root, &failure.path, text).field
@@ -148,7 +151,7 @@ impl Reader<'_> {
             return None;
         }
         if let (Error::MissingStructField { field, .. }, None) = (&failure.error.code, field) {
-            let (_, stand_in) = STAND_INS.iter().find(|(name, _)| name == field)?;
+            let (_, stand_in) = D::STAND_INS.iter().find(|(name, _)| name == field)?;
             blanked.push(finding_path);
             let group = root.group?;
             let comma = if group.items.last().is_some_and(|last| !last.comma) {
@@ -177,8 +180,8 @@ impl Reader<'_> {
         }
         if faults.is_empty() {
             self.add(Finding {
-                message: "the file holds no scenario".into(),
-                help: Some("a scenario file holds `Scenario( ... )`".into()),
+                message: format!("the file holds no {}", D::KIND.to_lowercase()),
+                help: Some(format!("a {} file holds `{}( ... )`", D::KIND.to_lowercase(), D::KIND)),
                 path: FieldPath::default(),
                 span: text.len()..text.len(),
                 label: "the file ends here".into(),
@@ -187,7 +190,7 @@ impl Reader<'_> {
     }
 
     /// Reports what is wrong between fields, but not what a fault of one of them may have caused.
-    fn check(&mut self, scenario: &Scenario, blanked: &[FieldPath]) {
+    fn check(&mut self, document: &D, blanked: &[FieldPath]) {
         let text = self.source.text().to_owned();
         let (Some(root), _) = tree::read(&text) else {
             return;
@@ -201,7 +204,7 @@ impl Reader<'_> {
                 blanked.iter().any(|left_out| touches(left_out) || misspelt(left_out))
             })
         };
-        for problem in problems(scenario).into_iter().filter(|problem| !caused(problem)) {
+        for problem in document.problems().into_iter().filter(|problem| !caused(problem)) {
             let finding = between(problem, &root, &text);
             self.add(finding);
         }
@@ -211,7 +214,7 @@ impl Reader<'_> {
         let location = self.source.locate(&finding.span);
         let given = location.override_index.and_then(|index| self.overrides.get(index));
         let (prefix, name, text) = match given {
-            Some(given) => (given.prefix(), "--set", given.text()),
+            Some(given) => (given.prefix(), given.name(), given.text()),
             None => (String::new(), self.name, &self.file),
         };
         self.diagnostics.push(Diagnostic {
@@ -246,7 +249,7 @@ fn stands_for(blanked: &FieldPath, missing: &FieldPath) -> bool {
 }
 
 /// Places a problem at its field, or where that is left out, at another that it depends on, or at what is around it.
-fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
+pub(super) fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
     let stands = |path: &&FieldPath| {
         let place = follow(root, path, text);
         place.steps == path.0.len()

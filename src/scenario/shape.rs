@@ -28,6 +28,19 @@ impl Shape<'static> {
     }
 }
 
+impl Shape<'static> {
+    /// The schema of a whole study.
+    pub fn study() -> Self {
+        static SCHEMA: OnceLock<Value> = OnceLock::new();
+        let root = SCHEMA.get_or_init(|| super::study_schema().to_value());
+        Self {
+            root,
+            here: root,
+            place: root,
+        }
+    }
+}
+
 impl<'s> Shape<'s> {
     /// The value at `path`, if scenarios have it.
     pub fn at(self, path: &FieldPath) -> Option<Self> {

@@ -74,11 +74,6 @@ impl Alarms {
         }
     }
 
-    /// Whether the robot is asleep: nothing wakes it, control steps neither.
-    pub fn is_asleep(&self) -> bool {
-        self.asleep
-    }
-
     /// Puts the robot to sleep until it is [resumed](Self::resume).
     pub fn sleep(&mut self) {
         self.asleep = true;

@@ -5,8 +5,10 @@ use std::cmp::Ordering;
 use crate::engine::SimTime;
 use crate::protocol::Reception;
 
-/// Frames on their way to one robot, and those that arrived since it last woke.
+/// Frames on their way to one robot, and those that arrived since it last woke. Aligned so that none lies across two cache
+/// lines: every copy of every frame reads one.
 #[derive(Debug)]
+#[repr(align(32))]
 pub struct Inbox<M> {
     waiting: Vec<Reception<M>>,
     /// No waiting frame arrives later than this.
@@ -64,25 +66,22 @@ fn arrival_order<M>(a: &Reception<M>, b: &Reception<M>) -> Ordering {
 
 #[cfg(test)]
 mod tests {
-    use std::rc::Rc;
-
     use proptest::prelude::*;
 
     use super::*;
     use crate::engine::ActorId;
-    use crate::protocol::{Frame, Topic};
+    use crate::protocol::{Frame, MessageSize};
 
     fn reception(at: u64, sender: u32, sequence: u32) -> Reception<()> {
         Reception {
             at: SimTime::from_nanos(at),
-            frame: Rc::new(Frame {
+            frame: Frame {
                 sender: ActorId(sender),
                 sequence,
                 sent_at: SimTime::ZERO,
-                topic: Topic(0),
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: (),
-            }),
+            },
             displacement: [0.0; 2],
         }
     }

@@ -190,7 +190,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     /// Wakes every robot that has a control step at `now`.
     async fn take_control_steps(&mut self, now: SimTime) -> Result<(), RunError> {
         while let Some(robot) = self.control_steps.take_due(now) {
-            if self.alarms[robot.index()].is_asleep() {
+            if !self.faults.health(robot).acts {
                 continue;
             }
             let job = self.prepare(now, robot, Wake::ControlStep);

@@ -4,14 +4,14 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use desim::engine::{ActorId, SimTime, Span};
-use desim::experiment::{Ending, Experiment, ExperimentError, Parts};
+use desim::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
 use desim::export::{Folder, Manifest, Pictures, write};
 use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
 use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
 use desim::metrics::{
-    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotState, TopicFates,
-    TrafficRow, TrialRecord, Volume,
+    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotBytes, RobotState,
+    RumorSpread, SeriesEntry, TopicFates, TrafficRow, TrialRecord, Volume,
 };
 use desim::radio::LossCause;
 use desim::scenario::{Scenario, parse};
@@ -57,9 +57,11 @@ pub fn record(trial: u32) -> TrialRecord {
         latency,
         faults: faults(trial),
         healing: healing(trial),
+        spread: spread(trial),
         detection: detection(trial),
         trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
+        series: (1..SAMPLES).map(|sample| series(sample, trial)).collect(),
         robots: (0..ROBOTS).map(|robot| state(robot, odd)).collect(),
         trajectories: (0..SAMPLES)
             .map(|sample| (SimTime::from_secs(sample as f64 * 5.0), places(sample)))
@@ -136,6 +138,7 @@ fn traffic(robot: u32, topic: u8, trial: u32) -> TrafficRow {
         topic,
         sent: volume(600),
         received: volume(u64::from(4000 + 10 * robot + trial)),
+        duplicate: volume(u64::from(topic) * u64::from(7 + robot + trial)),
         lost: [robot, 0, robot % 2].map(|frames| volume(frames.into())),
     }
 }
@@ -186,6 +189,22 @@ fn healing(trial: u32) -> Vec<HealingEpisode> {
     }
 }
 
+/// Two rumours, of which the second does not reach the last robot in the first trial.
+fn spread(trial: u32) -> Vec<RumorSpread> {
+    let at = |rumor: u32, robot: u32| SimTime::from_secs(f64::from(robot * (rumor + 3) + trial) / 7.0);
+    let reaches = |rumor, robot| trial > 0 || rumor == 0 || robot + 1 < ROBOTS;
+    let informed = |rumor| {
+        (0..ROBOTS)
+            .map(|robot| reaches(rumor, robot).then(|| at(rumor, robot)))
+            .collect()
+    };
+    (0..2)
+        .map(|rumor| RumorSpread {
+            informed: informed(rumor),
+        })
+        .collect()
+}
+
 fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {
     let lambda2 = if sample == 7 { 0.0 } else { odd / (sample + 1) as f64 };
     ConnectivitySample {
@@ -194,6 +213,22 @@ fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {
         components: if sample == 7 { 2 } else { 1 },
         roles: vec![2, 1, 4, 2],
         links: vec![1, u32::from(sample > 3)],
+    }
+}
+
+/// Traffic that dies down; the last entry is of all topics.
+fn series(sample: u64, trial: u32) -> SeriesEntry {
+    let bytes = |scale: u64| RobotBytes {
+        total: scale * (1000 + u64::from(trial)) / sample,
+        min: scale / 10,
+        median: scale as f64 * 1.5,
+        max: scale * 9,
+    };
+    SeriesEntry {
+        since: SimTime::from_secs((sample - 1) as f64 * 5.0),
+        at: SimTime::from_secs(sample as f64 * 5.0),
+        sent: [1, 2, 3, 4, 10].map(bytes).into(),
+        received: [10, 20, 30, 40, 100].map(bytes).into(),
     }
 }
 
@@ -255,11 +290,10 @@ pub fn run(
     let experiment = Experiment {
         trials: scenario.trials,
         seed: scenario.seed,
-        jobs,
         parts: &parts,
-        stop,
     };
-    let ending = experiment.run(run, |_| ())?;
+    let pool = Pool { jobs, stop };
+    let ending = pool.run(&[experiment], |_, trial| run(trial), |_, _| ())?;
     if ending == Ending::Finished {
         write(&folder, parts, scenario, Pictures::First).expect("the results can be written");
     }

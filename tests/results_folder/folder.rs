@@ -84,6 +84,8 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
         "healing.parquet",
         "latency.parquet",
         "robots.parquet",
+        "series.parquet",
+        "spread.parquet",
         "summary.json",
         "trajectories.parquet",
         "trajectories_0.svg",

@@ -8,6 +8,7 @@ mod command;
 mod mutations;
 #[path = "../shipped/mod.rs"]
 mod shipped;
+mod studies;
 
 const MUTANTS: u32 = 300;
 /// Longest time that a mutant may take: a hundred times what one takes.

@@ -1,6 +1,8 @@
 //! Scenario files with something done to them, as people and their editors do: made from the shipped files by a fixed
 //! seed, so that a list of them is the same on every machine.
 
+use std::path::PathBuf;
+
 use rand::seq::IndexedRandom;
 use rand::{Rng, RngExt};
 use rand_philox::Philox;
@@ -82,9 +84,14 @@ const LETTERS: [&str; 22] = [
     "\0", "\r",
 ];
 
-/// The first `count` mutants.
+/// The first `count` mutants of scenario files.
 pub fn mutants(count: u32) -> Vec<Mutant> {
-    let files: Vec<_> = shipped::files()
+    mutants_of(shipped::files(), count)
+}
+
+/// The first `count` mutants of these files.
+pub fn mutants_of(files: Vec<PathBuf>, count: u32) -> Vec<Mutant> {
+    let files: Vec<_> = files
         .into_iter()
         .map(|path| {
             (

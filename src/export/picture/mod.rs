@@ -2,9 +2,12 @@
 
 mod canvas;
 mod final_state;
+mod pareto;
 mod shapes;
 mod style;
 mod trajectories;
+
+pub use pareto::draw as pareto;
 
 use svg::Document;
 

@@ -11,16 +11,16 @@ use super::record::Missed;
 #[derive(Debug)]
 pub struct StatusLog {
     memory: Span,
-    turn_at: SimTime,
-    sent: Vec<Generations<Sent>>,
-    lost: Vec<Generations<Lost>>,
+    senders: Vec<Sender>,
 }
 
-/// Entries of the present stretch of time and of the one before: old ones go all together, and a push is a push.
-#[derive(Debug)]
-struct Generations<T> {
-    old: Vec<T>,
-    new: Vec<T>,
+/// The statuses of one robot. Small and in one place: at each status it is written to, and seldom read.
+#[derive(Debug, Default)]
+struct Sender {
+    sent: Vec<Sent>,
+    lost: Vec<Lost>,
+    /// When the first status in `sent` was sent.
+    since: SimTime,
 }
 
 #[derive(Debug)]
@@ -32,64 +32,67 @@ struct Sent {
 /// A lost copy, at its sender: what one frame loses lies together in memory.
 #[derive(Debug)]
 struct Lost {
-    receiver: u32,
     sequence: u32,
-    cause: LossCause,
+    /// The receiver, and the number of the cause in the bits above it: a swarm has a million robots at most.
+    receiver_and_cause: u32,
 }
 
-impl<T> Generations<T> {
-    fn new(robots: usize) -> Vec<Self> {
-        let none = || Self {
-            old: Vec::new(),
-            new: Vec::new(),
-        };
-        std::iter::repeat_with(none).take(robots).collect()
+impl Lost {
+    const RECEIVER_BITS: u32 = 24;
+
+    fn new(receiver: ActorId, sequence: u32, cause: LossCause) -> Self {
+        debug_assert!(
+            receiver.0 >> Self::RECEIVER_BITS == 0,
+            "robot {receiver} has no number of 24 bits"
+        );
+        Self {
+            sequence,
+            receiver_and_cause: receiver.0 | (cause as u32) << Self::RECEIVER_BITS,
+        }
     }
 
-    fn turn(&mut self) {
-        std::mem::swap(&mut self.old, &mut self.new);
-        self.new.clear();
+    fn receiver(&self) -> ActorId {
+        ActorId(self.receiver_and_cause & ((1 << Self::RECEIVER_BITS) - 1))
     }
 
-    fn iter(&self) -> impl Iterator<Item = &T> {
-        self.old.iter().chain(&self.new)
+    /// The place of its cause among all.
+    fn cause(&self) -> usize {
+        (self.receiver_and_cause >> Self::RECEIVER_BITS) as usize
     }
 }
 
 impl StatusLog {
-    /// An empty log that reaches back at least `memory`.
+    /// An empty log that reaches back `memory`.
     pub fn new(robots: usize, memory: Span) -> Self {
         Self {
             memory,
-            turn_at: SimTime::ZERO + memory,
-            sent: Generations::new(robots),
-            lost: Generations::new(robots),
+            senders: std::iter::repeat_with(Sender::default).take(robots).collect(),
         }
     }
 
     /// `sender` sends a status, its frame number `sequence`.
     pub fn sent(&mut self, now: SimTime, sender: ActorId, sequence: u32) {
-        if now >= self.turn_at {
-            self.turn_at = now + self.memory;
-            self.sent.iter_mut().for_each(Generations::turn);
-            self.lost.iter_mut().for_each(Generations::turn);
+        let sender = &mut self.senders[sender.index()];
+        // What is too old goes half a memory at a time, so that a push is mostly a push.
+        if sender.since + self.memory + self.memory / 2 < now {
+            sender.forget_before(now - self.memory);
         }
-        self.sent[sender.index()].new.push(Sent { sequence, at: now });
+        if sender.sent.is_empty() {
+            sender.since = now;
+        }
+        sender.sent.push(Sent { sequence, at: now });
     }
 
     /// The copy of a status that was meant for `receiver` is lost.
     #[inline]
     pub fn lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {
-        self.lost[sender.index()].new.push(Lost {
-            receiver: receiver.0,
-            sequence,
-            cause,
-        });
+        let lost = &mut self.senders[sender.index()].lost;
+        lost.push(Lost::new(receiver, sequence, cause));
     }
 
     /// What became at `observer`, until `now`, of the statuses that `subject` sent after its frame number `sequence` and
-    /// before `now`, with `waiting` under way to the observer. Whoever sends at this very instant does not count: whether
-    /// it did so before the observer or after it is an accident.
+    /// before `now`, as far back as the memory reaches, with `waiting` under way to the observer. Whoever sends at this very
+    /// instant does not count: whether it did so before the observer or after it is an accident.
     pub fn missed<M>(
         &self,
         now: SimTime,
@@ -97,17 +100,21 @@ impl StatusLog {
         sequence: u32,
         waiting: &[Reception<M>],
     ) -> Missed {
-        let is_newer = |status: u32| status.wrapping_sub(sequence).cast_signed() > 0;
-        let sent = self.sent[subject.index()].iter();
-        let (mut missed, mut total, mut last) = (Missed::default(), 0, sequence);
-        for status in sent.filter(|status| is_newer(status.sequence) && status.at < now) {
+        let subject_log = &self.senders[subject.index()];
+        let recent = (now - self.memory)..now;
+        let statuses = subject_log.sent.iter();
+        let statuses = statuses.filter(|status| is_newer(status.sequence, sequence) && recent.contains(&status.at));
+        let (mut missed, mut total, mut ends) = (Missed::default(), 0, None);
+        for status in statuses {
             total += 1;
-            last = status.sequence;
+            ends = Some((ends.map_or(status.sequence, |(first, _)| first), status.sequence));
         }
-        let counts = |status: u32| is_newer(status) && last.wrapping_sub(status).cast_signed() >= 0;
-        let lost = self.lost[subject.index()].iter();
-        for copy in lost.filter(|copy| copy.receiver == observer.0 && counts(copy.sequence)) {
-            missed.lost[copy.cause as usize] += 1;
+        let Some((first, last)) = ends else { return missed };
+        let counts = |status: u32| !is_newer(first, status) && !is_newer(status, last);
+        for copy in &subject_log.lost {
+            if copy.receiver() == observer && counts(copy.sequence) {
+                missed.lost[copy.cause()] += 1;
+            }
         }
         let under_way = waiting.iter().map(|reception| &reception.frame);
         let under_way = under_way.filter(|frame| frame.sender == subject && counts(frame.sequence));
@@ -119,19 +126,37 @@ impl StatusLog {
 
     /// How many of the frames `sequences` of `subject` are statuses.
     fn statuses(&self, subject: ActorId, sequences: impl Iterator<Item = u32>) -> u32 {
-        let sent = &self.sent[subject.index()];
+        let sent = &self.senders[subject.index()].sent;
         sequences
             .filter(|sequence| sent.iter().any(|status| status.sequence == *sequence))
             .count() as u32
     }
 }
 
+impl Sender {
+    /// Forgets statuses sent before `oldest`, and what was lost of them.
+    fn forget_before(&mut self, oldest: SimTime) {
+        let kept = self.sent.partition_point(|status| status.at < oldest);
+        self.sent.drain(..kept);
+        match self.sent.first() {
+            Some(first) => {
+                self.since = first.at;
+                self.lost.retain(|copy| !is_newer(first.sequence, copy.sequence));
+            }
+            None => self.lost.clear(),
+        }
+    }
+}
+
+/// Whether frame number `a` of a robot is a later one than `b`: numbers go round.
+fn is_newer(a: u32, b: u32) -> bool {
+    a.wrapping_sub(b).cast_signed() > 0
+}
+
 #[cfg(test)]
 mod tests {
-    use std::rc::Rc;
-
     use super::*;
-    use crate::protocol::{Frame, Topic};
+    use crate::protocol::{Frame, MessageSize};
 
     const OBSERVER: ActorId = ActorId(0);
     const SUBJECT: ActorId = ActorId(1);
@@ -143,14 +168,13 @@ mod tests {
     fn under_way(sequence: u32) -> Reception<()> {
         Reception {
             at: at(9.0),
-            frame: Rc::new(Frame {
+            frame: Frame {
                 sender: SUBJECT,
                 sequence,
                 sent_at: at(0.0),
-                topic: Topic(0),
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: (),
-            }),
+            },
             displacement: [0.0; 2],
         }
     }
@@ -181,9 +205,35 @@ mod tests {
     }
 
     #[test]
-    fn what_was_sent_longer_ago_than_twice_the_memory_is_forgotten() {
-        // The log turns at 2 s, 4 s and 6 s: before 4 s nothing is left.
-        let missed = log(2.0).missed(at(6.5), [OBSERVER, SUBJECT], 0, &[] as &[Reception<()>]);
-        assert_eq!(missed.out_of_range, 3);
+    fn what_was_sent_longer_ago_than_the_memory_does_not_count_however_much_of_it_is_kept() {
+        let none = [] as [Reception<()>; 0];
+        for (memory_s, counted) in [(2.0, 2), (2.5, 3), (100.0, 6)] {
+            let mut log = log(memory_s);
+            for lost in [20, 50] {
+                log.lost(OBSERVER, SUBJECT, lost, LossCause::Channel);
+            }
+            let missed = log.missed(at(6.5), [OBSERVER, SUBJECT], 0, &none);
+            let lost = missed.lost[LossCause::Channel as usize];
+            assert_eq!(
+                lost + missed.out_of_range,
+                counted,
+                "of 10, 20 … 60, sent at 1 s, 2 s … 6 s"
+            );
+            assert_eq!(lost, if memory_s > 4.5 { 2 } else { 1 });
+        }
+    }
+
+    #[test]
+    fn old_statuses_and_their_losses_take_no_room() {
+        let mut log = StatusLog::new(2, Span::from_secs(2.0));
+        for status in 0..1000_u32 {
+            log.sent(at(f64::from(status)), SUBJECT, status);
+            log.lost(OBSERVER, SUBJECT, status, LossCause::Channel);
+        }
+        let kept = &log.senders[SUBJECT.index()];
+        assert!(
+            kept.sent.len() <= 4 && kept.lost.len() <= 4,
+            "one a second, kept for three at most"
+        );
     }
 }

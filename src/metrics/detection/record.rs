@@ -29,7 +29,7 @@ pub struct Suspicion {
     pub subject: ActorId,
     /// Since when.
     pub at: SimTime,
-    /// When the subject's last status had arrived.
+    /// When the subject's last status had arrived; its last frame, where the observer's detector probes.
     pub heard: SimTime,
     /// The newest of the subject's frames that had arrived, by its number among them.
     pub sequence: u32,
@@ -100,12 +100,14 @@ pub enum Cause {
     Latency,
     /// The subject sent none.
     NotSent,
+    /// The subject was within range, but probes of it went unanswered, as far as the observer could know.
+    Unanswered,
 }
 
 impl Cause {
     /// Every cause, in the order in which reports name them.
-    pub const ALL: [Self; LossCause::ALL.len() + 4] = {
-        let mut all = [Self::Failure; LossCause::ALL.len() + 4];
+    pub const ALL: [Self; LossCause::ALL.len() + 5] = {
+        let mut all = [Self::Failure; LossCause::ALL.len() + 5];
         let mut cause = 0;
         while cause < LossCause::ALL.len() {
             all[cause + 1] = Self::Lost(LossCause::ALL[cause]);
@@ -114,6 +116,7 @@ impl Cause {
         all[cause + 1] = Self::OutOfRange;
         all[cause + 2] = Self::Latency;
         all[cause + 3] = Self::NotSent;
+        all[cause + 4] = Self::Unanswered;
         all
     };
 
@@ -126,6 +129,7 @@ impl Cause {
             Self::OutOfRange => "out_of_range",
             Self::Latency => "latency",
             Self::NotSent => "not_sent",
+            Self::Unanswered => "unanswered",
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::Health;
-use crate::protocol::{Note, Reception};
+use crate::protocol::{Evidence, Note, Reception};
 use crate::radio::LossCause;
 
 use super::log::StatusLog;
-use super::record::{Cause, DetectionRecord, FailureOutcome, ObservedFailure, Suspicion, Verdict};
+use super::record::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion, Verdict};
 
 /// Scores the failure detectors of one run.
 #[derive(Debug)]
@@ -35,14 +35,15 @@ struct Tally {
 #[derive(Debug)]
 struct Pair {
     subject: ActorId,
-    /// Since when the pair is monitored, in one stretch and with one belief.
-    since: Option<SimTime>,
+    /// Since when the pair is monitored, in one stretch and with one belief; `NEVER` while it is not. There is a pair for
+    /// every link of the swarm, so it is kept small.
+    since: SimTime,
     /// The suspicion in force, by its place in the tally.
-    suspicion: Option<usize>,
+    suspicion: Option<u32>,
     /// Whether that is a mistake.
     mistaken: bool,
     /// The failure that is to be detected, by its place in the tally.
-    failure: Option<usize>,
+    failure: Option<u32>,
 }
 
 impl Scorer {
@@ -77,7 +78,12 @@ impl Scorer {
     pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, waiting: &[Reception<M>]) {
         match *note {
             Note::Watches(subject) => self.watch(now, observer, subject),
-            Note::Suspects { robot, heard, sequence } => {
+            Note::Suspects {
+                robot,
+                heard,
+                sequence,
+                evidence,
+            } => {
                 let missed = self.log.missed(now, [observer, robot], sequence, waiting);
                 let subject_down = !self.health[robot.index()].sends;
                 let is_failure = subject_down || self.silent(robot, heard, now) * 2 > now.since(heard);
@@ -89,21 +95,25 @@ impl Scorer {
                     sequence,
                     until: None,
                     subject_down,
-                    cause: if is_failure { Cause::Failure } else { missed.cause() },
+                    cause: if is_failure {
+                        Cause::Failure
+                    } else {
+                        cause(&missed, evidence)
+                    },
                     missed,
                     duration: None,
                 };
                 self.suspect(suspicion);
             }
             Note::Trusts(subject) => self.trust(now, observer, subject),
-            Note::Role(_) | Note::Target(_) | Note::Parents(_) => {}
+            Note::Duplicate { .. } | Note::Informed { .. } | Note::Role(_) | Note::Target(_) | Note::Parents(_) => {}
         }
     }
 
     fn watch(&mut self, now: SimTime, observer: ActorId, subject: ActorId) {
         let mut pair = Pair {
             subject,
-            since: None,
+            since: SimTime::NEVER,
             suspicion: None,
             mistaken: false,
             failure: None,
@@ -120,7 +130,7 @@ impl Scorer {
         let able = self.is_able(observer, subject);
         let pair = find(&mut self.pairs, observer, subject);
         pair.settle(at, &mut self.tally);
-        pair.suspicion = Some(self.tally.suspicions.len());
+        pair.suspicion = Some(self.tally.suspicions.len() as u32);
         pair.mistaken = suspicion.verdict() == Verdict::Mistake;
         self.tally.suspicions.push(suspicion);
         pair.resume(at, able);
@@ -131,7 +141,7 @@ impl Scorer {
         let pair = find(&mut self.pairs, observer, subject);
         pair.settle(now, &mut self.tally);
         if let Some(suspicion) = pair.suspicion.take() {
-            let suspicion = &mut self.tally.suspicions[suspicion];
+            let suspicion = &mut self.tally.suspicions[suspicion as usize];
             suspicion.until = Some(now);
             suspicion.duration = pair.mistaken.then(|| now.since(suspicion.at));
         }
@@ -164,13 +174,13 @@ impl Scorer {
     fn subject_changes(&mut self, now: SimTime, observer: ActorId, subject: ActorId) {
         let able = self.is_able(observer, subject);
         let pair = find(&mut self.pairs, observer, subject);
-        let was_monitored = pair.since.is_some();
+        let was_monitored = pair.since < SimTime::NEVER;
         pair.settle(now, &mut self.tally);
         pair.mistaken = false;
         if self.health[subject.index()].sends {
             pair.resolve(FailureOutcome::Recovered, &mut self.tally);
         } else if was_monitored {
-            pair.failure = Some(self.tally.failures.len());
+            pair.failure = Some(self.tally.failures.len() as u32);
             self.tally.failures.push(ObservedFailure {
                 subject,
                 observer,
@@ -221,6 +231,17 @@ impl Scorer {
     }
 }
 
+/// What a suspicion of a robot that was well was due to. Who goes by probes does not go by statuses: these only tell whether
+/// the two could hear each other.
+fn cause(missed: &Missed, evidence: Evidence) -> Cause {
+    let cause = missed.cause();
+    let hindered = matches!(cause, Cause::OutOfRange | Cause::Lost(LossCause::ReceiverDown));
+    match evidence {
+        Evidence::Probes if !hindered => Cause::Unanswered,
+        Evidence::Probes | Evidence::Silence => cause,
+    }
+}
+
 /// The pair of `observer` and `subject`.
 fn find(pairs: &mut [Vec<Pair>], observer: ActorId, subject: ActorId) -> &mut Pair {
     let mut watched = pairs[observer.index()].iter_mut();
@@ -231,25 +252,24 @@ fn find(pairs: &mut [Vec<Pair>], observer: ActorId, subject: ActorId) -> &mut Pa
 impl Pair {
     /// Counts the stretch that ends at `now`.
     fn settle(&mut self, now: SimTime, tally: &mut Tally) {
-        if let Some(since) = self.since.take() {
-            let nanos = u128::from(now.since(since).as_nanos());
-            tally.monitored_nanos += nanos;
-            tally.mistaken_nanos += if self.mistaken { nanos } else { 0 };
-        }
+        // A pair that is not monitored began to be so `NEVER`, no time ago.
+        let nanos = u128::from(now.since(std::mem::replace(&mut self.since, SimTime::NEVER)).as_nanos());
+        tally.monitored_nanos += nanos;
+        tally.mistaken_nanos += if self.mistaken { nanos } else { 0 };
     }
 
     /// Begins a stretch at `now`, if both robots are `able` and the belief says something of the detector's quality.
     fn resume(&mut self, now: SimTime, able: bool) {
         let tells = self.suspicion.is_none() || self.mistaken;
-        self.since = (able && tells).then_some(now);
+        self.since = if able && tells { now } else { SimTime::NEVER };
     }
 
     /// The failure ends: it was detected if the subject is suspected now, else the `outcome` is another.
     fn resolve(&mut self, outcome: FailureOutcome, tally: &mut Tally) {
         if let Some(failure) = self.failure.take() {
-            let failure = &mut tally.failures[failure];
+            let failure = &mut tally.failures[failure as usize];
             failure.outcome = self.suspicion.map_or(outcome, |suspicion| {
-                FailureOutcome::Detected(tally.suspicions[suspicion].at.since(failure.at))
+                FailureOutcome::Detected(tally.suspicions[suspicion as usize].at.since(failure.at))
             });
         }
     }
@@ -292,12 +312,17 @@ mod tests {
 
         /// A suspicion, the last status heard being number `heard` at its own second.
         fn suspect(&mut self, seconds: f64, heard: u32) {
+            self.suspect_for(Evidence::Silence, seconds, heard);
+        }
+
+        fn suspect_for(&mut self, evidence: Evidence, seconds: f64, heard: u32) {
             self.believe(
                 seconds,
                 &Note::Suspects {
                     robot: SUBJECT,
                     heard: at(f64::from(heard)),
                     sequence: heard,
+                    evidence,
                 },
             );
         }
@@ -424,6 +449,26 @@ mod tests {
         assert_eq!(
             (suspicion.verdict(), suspicion.cause),
             (Verdict::Mistake, Cause::Failure)
+        );
+    }
+
+    #[test]
+    fn a_suspicion_by_probes_is_due_to_them_unless_the_two_could_not_hear_each_other() {
+        let mut bench = Bench::new();
+        bench.lose(4..5);
+        bench.suspect_for(Evidence::Probes, 5.5, 3);
+        bench.trust(6.0);
+        bench.suspect_for(Evidence::Probes, 12.5, 6);
+        let suspicions = bench.outcomes().0.suspicions;
+        let judged = suspicions
+            .iter()
+            .map(|suspicion| (suspicion.cause, suspicion.verdict()));
+        assert_eq!(
+            judged.collect::<Vec<_>>(),
+            [
+                (Cause::Unanswered, Verdict::Mistake),
+                (Cause::OutOfRange, Verdict::OutOfRange)
+            ]
         );
     }
 }

@@ -2,13 +2,21 @@
 //!
 //! Reference figures in the tests come from numpy, scipy and lifelines; the calls stand beside them.
 
+mod bootstrap;
+mod family;
 mod location;
+mod permutation;
+mod ranks;
 mod spread;
 mod survival;
 
-pub use location::{mean, median, proportion, ratio};
+pub use bootstrap::Resamples;
+pub use family::{POWER, holm, trials_needed};
+pub use location::{mean, median, proportion, ratio, share};
+pub use permutation::{Part, paired_permutation, ratio_of_sums};
+pub use ranks::{cliffs_delta, mann_whitney, wilcoxon};
 pub use spread::{gini, quantile};
-pub use survival::{Observation, median_survival};
+pub use survival::{Observation, Step, log_rank, median_survival, survival_curve};
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -16,13 +24,16 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// Probability that an interval leaves out on either side.
 const TAIL: f64 = 0.025;
 
+/// Lower and upper end of a 95 % interval, each absent where the trials cannot tell it.
+pub type Ci95 = [Option<f64>; 2];
+
 /// An estimate from a number of trials. What the trials cannot tell is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// The point estimate.
     pub value: Option<f64>,
     /// Lower and upper end of the 95 % interval.
-    pub ci95: [Option<f64>; 2],
+    pub ci95: Ci95,
     /// Number of trials.
     pub n: u64,
 }

@@ -127,7 +127,7 @@ impl Directions {
 impl Spread {
     /// Of each robot's sum of `bytes` over its rows.
     fn of(records: &[TrialRecord], bytes: impl Fn(&TrafficRow) -> u64) -> Self {
-        let trials: Vec<Vec<f64>> = records.iter().map(|record| per_step(record, &bytes)).collect();
+        let trials: Vec<Vec<f64>> = records.iter().map(|record| record.bytes_per_step(&bytes)).collect();
         let means: Vec<f64> = trials.iter().filter_map(|robots| mean(robots).value).collect();
         let mut pooled = trials.concat();
         pooled.sort_by(f64::total_cmp);
@@ -147,7 +147,7 @@ impl LoadImbalance {
         let over_trials = |bytes: fn(&TrafficRow) -> u64| {
             let trials: Vec<f64> = records
                 .iter()
-                .filter_map(|record| gini(&per_step(record, bytes)))
+                .filter_map(|record| gini(&record.bytes_per_step(bytes)))
                 .collect();
             mean(&trials)
         };
@@ -157,16 +157,4 @@ impl LoadImbalance {
             unit: DIMENSIONLESS.into(),
         }
     }
-}
-
-/// Each robot's bytes a control step in one trial, of whatever `bytes` takes from its rows; a robot without traffic
-/// counts with 0.
-fn per_step(record: &TrialRecord, bytes: impl Fn(&TrafficRow) -> u64) -> Vec<f64> {
-    let mut sums = vec![0; record.robots.len()];
-    for row in &record.traffic {
-        sums[row.robot.index()] += bytes(row);
-    }
-    // A run too short for a single control step lasts no longer than one.
-    let steps = record.steps.max(1) as f64;
-    sums.into_iter().map(|sum| sum as f64 / steps).collect()
 }

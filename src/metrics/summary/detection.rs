@@ -105,7 +105,8 @@ impl Detection {
     }
 }
 
-fn mistakes(trial: &DetectionRecord) -> impl Iterator<Item = &Suspicion> {
+/// The suspicions of a trial that were mistakes.
+pub(in crate::metrics) fn mistakes(trial: &DetectionRecord) -> impl Iterator<Item = &Suspicion> {
     trial
         .suspicions
         .iter()
@@ -113,7 +114,7 @@ fn mistakes(trial: &DetectionRecord) -> impl Iterator<Item = &Suspicion> {
 }
 
 /// The sum of the detection times, and how many there are.
-fn detection_times(trial: &DetectionRecord) -> [f64; 2] {
+pub(in crate::metrics) fn detection_times(trial: &DetectionRecord) -> [f64; 2] {
     let times = trial.failures.iter().filter_map(|failure| match failure.outcome {
         FailureOutcome::Detected(after) => Some(after.as_secs()),
         FailureOutcome::Recovered | FailureOutcome::ObserverFailed | FailureOutcome::Undetected => None,
@@ -122,7 +123,7 @@ fn detection_times(trial: &DetectionRecord) -> [f64; 2] {
 }
 
 /// The sum of the mistakes' durations, and how many there are.
-fn durations(trial: &DetectionRecord) -> [f64; 2] {
+pub(in crate::metrics) fn durations(trial: &DetectionRecord) -> [f64; 2] {
     let durations = trial.suspicions.iter().filter_map(|suspicion| suspicion.duration);
     durations.fold([0.0, 0.0], |[sum, count], duration| {
         [sum + duration.as_secs(), count + 1.0]
@@ -145,10 +146,13 @@ impl Suspicions {
             let all = trials.iter().flat_map(|trial| &trial.suspicions);
             all.filter(|suspicion| wanted(suspicion)).count() as u64
         };
+        // Probes are no cause where nobody probes.
+        let mut causes = Cause::ALL.to_vec();
+        causes.retain(|cause| *cause != Cause::Unanswered || count(&|suspicion| suspicion.cause == *cause) > 0);
         Self {
             value: count(&|_| true),
-            by_cause: Named::of(Cause::ALL.map(Cause::name), |cause| {
-                count(&|suspicion| suspicion.cause == Cause::ALL[cause])
+            by_cause: Named::of(causes.iter().map(|cause| cause.name()), |cause| {
+                count(&|suspicion| suspicion.cause == causes[cause])
             }),
             by_verdict: Named::of(Verdict::ALL.map(Verdict::name), |verdict| {
                 count(&|suspicion| suspicion.verdict() == Verdict::ALL[verdict])

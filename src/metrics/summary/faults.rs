@@ -115,15 +115,17 @@ impl HealingSummary {
     }
 }
 
+/// How long the harm of a failure lasted, or was watched in vain until the trial's end, seconds.
+pub(in crate::metrics) fn mending(episode: &HealingEpisode, end: SimTime) -> Observation {
+    Observation {
+        time: episode.healed_at.unwrap_or(end).since(episode.failed_at).as_secs(),
+        happened: episode.healed_at.is_some(),
+    }
+}
+
 impl Healed {
     fn of(topics: &[&str], cases: &[Case]) -> Self {
-        let observations: Vec<Observation> = cases
-            .iter()
-            .map(|(episode, end)| Observation {
-                time: episode.healed_at.unwrap_or(*end).since(episode.failed_at).as_secs(),
-                happened: episode.healed_at.is_some(),
-            })
-            .collect();
+        let observations: Vec<Observation> = cases.iter().map(|(episode, end)| mending(episode, *end)).collect();
         let mended = || cases.iter().filter(|(episode, _)| episode.healed_at.is_some());
         let measured = |figure: &dyn Fn(&HealingEpisode) -> f64, unit: &'static str| Measured {
             estimate: mean(&mended().map(|(episode, _)| figure(episode)).collect::<Vec<_>>()),

@@ -59,7 +59,7 @@ impl Fates {
 
 /// Delivered copies over offered ones in one trial, those in flight at its end among the offered; `None` if nothing
 /// was offered.
-pub(super) fn delivery_ratio(record: &TrialRecord) -> Option<f64> {
+pub(in crate::metrics) fn delivery_ratio(record: &TrialRecord) -> Option<f64> {
     let mut sum = TopicFates::default();
     record.ledger.iter().for_each(|fates| sum.add(fates));
     (sum.offered > 0).then(|| sum.delivered as f64 / sum.offered as f64)

@@ -13,7 +13,7 @@ use crate::metrics::statistics::Estimate;
 pub type Unit = Cow<'static, str>;
 
 /// The unit of what has none: ratios, shares, λ₂.
-pub(super) const DIMENSIONLESS: &str = "1";
+pub(in crate::metrics) const DIMENSIONLESS: &str = "1";
 
 /// A figure that is counted, not estimated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,7 +40,7 @@ pub struct Named<T>(pub Vec<(String, T)>);
 
 impl<T> Named<T> {
     /// `figure` of each of `names`, by its place.
-    pub(super) fn of<'a>(names: impl IntoIterator<Item = &'a str>, figure: impl Fn(usize) -> T) -> Self {
+    pub(in crate::metrics) fn of<'a>(names: impl IntoIterator<Item = &'a str>, figure: impl Fn(usize) -> T) -> Self {
         Self(
             names
                 .into_iter()

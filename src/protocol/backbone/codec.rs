@@ -11,15 +11,17 @@
 //! | order | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
 //! | order with a reserve | kind, relays in reserve, and on as an order |
 //! | strand | kind, chain, next, number of robots, robots |
+//! | probe | as the detector has it |
 //!
 //! The first byte tells messages apart: 0 to 3 is a status, which begins with its role. A robot's id is one byte if all
-//! ids in the message are below 256, else two, big-endian, and then the kind's top bit is set.
+//! ids in the message are below 256, else two, big-endian, and then the kind's top bit is set. The bit below begins a probe.
 
 use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
 use crate::engine::ActorId;
 use crate::protocol::CodecError;
+use crate::protocol::detector::{Monitored as _, Probe};
 
 use super::message::{Message, Order, Request, Role, Status, Strand, TargetSet};
 
@@ -49,6 +51,7 @@ impl Encoder<Message> for BackboneCodec {
             Message::Request(request) => put_request(request, bytes),
             Message::ParentStrand(strand) => put_strand(PARENT_STRAND, &strand, bytes),
             Message::ChildStrand(strand) => put_strand(CHILD_STRAND, &strand, bytes),
+            Message::Probe(probe) => probe.encode(bytes),
         }
         Ok(())
     }
@@ -123,7 +126,7 @@ fn put_strand(kind: u8, strand: &Strand, bytes: &mut BytesMut) {
     bytes.put_u8(strand.chain);
     put_id(strand.next, wide, bytes);
     bytes.put_u8(strand.robots.len() as u8);
-    for &robot in &strand.robots {
+    for &robot in &*strand.robots {
         put_id(robot, wide, bytes);
     }
 }
@@ -145,8 +148,11 @@ impl Decoder for BackboneCodec {
     type Error = CodecError;
 
     fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<Message>, CodecError> {
-        if bytes.is_empty() {
+        let Some(first) = bytes.first() else {
             return Ok(None);
+        };
+        if Probe::begins_with(*first) {
+            return Probe::decode(bytes).map(|probe| Some(Message::probe(probe)));
         }
         let length = bytes.len();
         let mut reader = Reader { bytes, length };
@@ -272,7 +278,7 @@ impl Reader<'_> {
         Ok(Strand {
             chain,
             next,
-            robots: strand,
+            robots: strand.into(),
         })
     }
 }
@@ -294,7 +300,7 @@ mod tests {
         (any::<u8>(), id(), prop::collection::vec(id(), 0..256)).prop_map(|(chain, next, robots)| Strand {
             chain,
             next,
-            robots,
+            robots: robots.into(),
         })
     }
 
@@ -413,6 +419,7 @@ mod tests {
     fn a_value_that_a_field_does_not_know_is_named() {
         for (payload, field) in [
             (&[9_u8, 0, 0, 0], "message kind"),
+            (&[0x43, 0, 0, 0], "message kind"),
             (&[0, 4, 0, 0], "previous role"),
             (&[0, 0, 2, 0], "parent need"),
         ] {

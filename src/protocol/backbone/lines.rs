@@ -62,7 +62,8 @@ impl Lines {
                 // Before that one who was not heard may just not have been heard yet.
                 self.any_lost |= view.step > view.parameters().silence_steps;
             }
-            if view.step - line.heard > view.parameters().healing_patience {
+            let parameters = view.parameters();
+            if view.step - line.heard > parameters.healing_patience.min(parameters.strand_lifetime) {
                 line.robots.clear();
             }
         }

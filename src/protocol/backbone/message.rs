@@ -1,7 +1,10 @@
-//! What robots say: the paper's four topics (section 4.3).
+//! What robots say: the paper's four topics (section 4.3), and what their failure detectors say.
+
+use std::rc::Rc;
 
 use crate::engine::ActorId;
 use crate::protocol;
+use crate::protocol::detector::{Monitored, Probe, Sign};
 
 /// What a robot is to the backbone (paper section 4.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +43,23 @@ pub enum Message {
     ParentStrand(Strand),
     /// The robots from the worker to the sender.
     ChildStrand(Strand),
+    /// What the failure detector says.
+    Probe(Rc<Probe>),
+}
+
+impl Monitored for Message {
+    #[inline]
+    fn sign(&self) -> Sign<'_> {
+        match self {
+            Self::Status(_) => Sign::Status,
+            Self::Probe(probe) => Sign::Probe(probe),
+            Self::Request(_) | Self::ParentStrand(_) | Self::ChildStrand(_) => Sign::Other,
+        }
+    }
+
+    fn probe(probe: Probe) -> Self {
+        Self::Probe(Rc::new(probe))
+    }
 }
 
 /// What every robot says of itself.
@@ -202,6 +222,6 @@ pub struct Strand {
     /// The robot that the sender counts on as the next of the chain, by which the two verify that they are linked. The
     /// root, which is linked to whoever names it, names itself.
     pub next: ActorId,
-    /// The robots, the sender last.
-    pub robots: Vec<ActorId>,
+    /// The robots, the sender last: shared by all that hear of them.
+    pub robots: Rc<[ActorId]>,
 }

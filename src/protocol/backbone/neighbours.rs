@@ -4,7 +4,7 @@ use crate::engine::{ActorId, SimTime};
 use crate::geometry::Vec2;
 
 use super::message::Status;
-use crate::protocol::row_index::RowIndex;
+use crate::protocol::robot_table::{RobotRow, RobotTable};
 
 /// A robot that was heard of late.
 #[derive(Clone, Copy, Debug)]
@@ -21,22 +21,22 @@ pub struct Neighbour {
     pub status: Status,
 }
 
-/// The neighbour table.
-///
-/// Rows lie together in the order in which robots were first heard, and an index by id leads to them.
-#[derive(Debug, Default)]
-pub struct Neighbours {
-    rows: Vec<Neighbour>,
-    index: RowIndex,
+impl RobotRow for Neighbour {
+    fn robot(&self) -> ActorId {
+        self.id
+    }
 }
+
+/// The neighbour table.
+#[derive(Debug, Default)]
+pub struct Neighbours(RobotTable<Neighbour>);
 
 impl Neighbours {
     /// Takes in a status that `id` sent as its frame number `sequence`, from `position`, and that arrived at `heard`.
     /// One that was overtaken by a newer one counts as a sign of life and says nothing else.
     pub fn hear(&mut self, id: ActorId, sequence: u32, heard: SimTime, position: Vec2, status: Status) {
-        let Some(row) = self.index.get(id) else {
-            self.index.set(id, self.rows.len());
-            self.rows.push(Neighbour {
+        let Some(known) = self.0.get_mut(id) else {
+            self.0.add(Neighbour {
                 id,
                 sequence,
                 heard,
@@ -45,7 +45,6 @@ impl Neighbours {
             });
             return;
         };
-        let known = &mut self.rows[row];
         known.heard = heard;
         if sequence.wrapping_sub(known.sequence).cast_signed() > 0 {
             known.sequence = sequence;
@@ -57,34 +56,23 @@ impl Neighbours {
     /// What is known of `id`, if it was heard of late.
     #[must_use]
     pub fn get(&self, id: ActorId) -> Option<&Neighbour> {
-        self.index.get(id).map(|row| &self.rows[row])
+        self.0.get(id)
     }
 
     /// All of them, in an order that depends on what was heard and on nothing else.
     pub fn iter(&self) -> std::slice::Iter<'_, Neighbour> {
-        self.rows.iter()
+        self.0.iter()
     }
 
     /// Whether nobody was heard of late.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+        self.0.is_empty()
     }
 
     /// Forgets those that are `down`.
     pub fn forget(&mut self, down: impl Fn(ActorId) -> bool) {
-        let mut row = 0;
-        while row < self.rows.len() {
-            if !down(self.rows[row].id) {
-                row += 1;
-                continue;
-            }
-            let gone = self.rows.swap_remove(row);
-            self.index.remove(gone.id);
-            if let Some(moved) = self.rows.get(row) {
-                self.index.set(moved.id, row);
-            }
-        }
+        self.0.retain(|known| !down(known.id));
     }
 }
 

@@ -1,5 +1,7 @@
 //! Strands: the robots of a chain from one end up to a robot (paper section 4.3).
 
+use std::rc::Rc;
+
 use crate::engine::ActorId;
 
 /// Keeps `heard` in `kept`, unless `me` is in it: then the strand runs in a circle and is worth nothing. Says whether it did.
@@ -14,11 +16,8 @@ pub fn keep(kept: &mut Vec<ActorId>, heard: &[ActorId], me: ActorId) -> bool {
 
 /// The strand as `me` passes it on.
 #[must_use]
-pub fn passed_on(kept: &[ActorId], me: ActorId) -> Vec<ActorId> {
-    let mut robots = Vec::with_capacity(kept.len() + 1);
-    robots.extend_from_slice(kept);
-    robots.push(me);
-    robots
+pub fn passed_on(kept: &[ActorId], me: ActorId) -> Rc<[ActorId]> {
+    kept.iter().copied().chain([me]).collect()
 }
 
 #[cfg(test)]
@@ -31,6 +30,6 @@ mod tests {
         assert!(!keep(&mut kept, &[ActorId(0), ActorId(7), ActorId(5)], ActorId(7)));
         assert_eq!(kept, [ActorId(0)]);
         assert!(keep(&mut kept, &[ActorId(0), ActorId(5)], ActorId(7)));
-        assert_eq!(passed_on(&kept, ActorId(7)), [0, 5, 7].map(ActorId));
+        assert_eq!(*passed_on(&kept, ActorId(7)), [0, 5, 7].map(ActorId));
     }
 }

@@ -166,7 +166,7 @@ impl Worker {
             Message::ChildStrand(Strand {
                 chain: slot.chain,
                 next: slot.parent,
-                robots: vec![me],
+                robots: [me].into(),
             })
         }));
     }

@@ -1,9 +1,10 @@
 //! Robots that are handed frames by hand: joining, its undoing, and orders.
 
+mod gossip;
 mod healing;
 
 use super::*;
-use crate::protocol::{Frame, TimerId};
+use crate::protocol::{Frame, MessageSize, TimerId};
 use rand_philox::Philox;
 
 const ROOT: u32 = 0;
@@ -13,6 +14,10 @@ const OTHER_FREE: u32 = 3;
 
 /// A root at the centre, a worker far enough out to recruit, and two free robots in between.
 fn robots(targets: u8) -> Vec<Backbone> {
+    robots_with(targets, &GossipConfig::default())
+}
+
+fn robots_with(targets: u8, gossip: &GossipConfig) -> Vec<Backbone> {
     let config = ron::from_str(&format!("(targets: Ring(count: {targets}, radius: 4.5))")).unwrap();
     let poses: Vec<Pose> = [0.0, 1.2, 0.7, 0.4]
         .map(|x| Pose {
@@ -22,10 +27,11 @@ fn robots(targets: u8) -> Vec<Backbone> {
         .into();
     swarm(
         &config,
-        &GossipConfig::default(),
+        gossip,
         &DetectorConfig::default(),
         Span::from_secs(0.1),
         &poses,
+        Streams::new(1, 0),
     )
 }
 
@@ -39,8 +45,12 @@ struct Bench {
 
 impl Bench {
     fn new(robot: u32, x: f64) -> Self {
+        Self::with(&GossipConfig::default(), robot, x)
+    }
+
+    fn with(gossip: &GossipConfig, robot: u32, x: f64) -> Self {
         Self {
-            robot: robots(1).remove(robot as usize),
+            robot: robots_with(1, gossip).remove(robot as usize),
             x,
             y: 0.0,
             sequence: 0,
@@ -53,14 +63,13 @@ impl Bench {
         self.sequence += 1;
         let inbox = heard.iter().map(|(sender, x, message)| Reception {
             at: now,
-            frame: Rc::new(Frame {
+            frame: Frame {
                 sender: ActorId(*sender),
                 sequence: self.sequence,
                 sent_at: now,
-                topic: Backbone::topic(message),
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: message.clone(),
-            }),
+            },
             displacement: [(x - self.x) as f32, -self.y as f32],
         });
         let mut input = Input {
@@ -74,7 +83,7 @@ impl Bench {
             random: Philox::from_u64_seed(1),
         };
         let mut output = Output::default();
-        self.robot.known.detector.expire(now, &mut output);
+        self.robot.known.detector.expire(now, &mut input.random, &mut output);
         output.clear();
         self.robot.step(now, &mut input, &mut output);
         output

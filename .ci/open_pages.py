@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Opens pages in a headless Chromium without a network, at desktop and phone width and on paper, and checks them.
+
+open_pages.py PICTURES PAGE...: pictures go to the folder PICTURES. Exit status 1 if a page has an error, asks for
+anything from outside, does not draw a chart, or scrolls sideways.
+"""
+
+import pathlib
+import sys
+import tempfile
+
+from playwright.sync_api import BrowserContext, Page, sync_playwright
+
+CHROMIUM = "/usr/bin/chromium"
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+WIDTHS = {"desktop": (1280, 900), "phone": (390, 844)}
+
+# Of each chart: its name, how many traces it is given, and how many it has drawn.
+CHARTS = """() => [...document.querySelectorAll('.plotly-graph-div')].map(div => ({
+    id: div.id,
+    given: (div.data || []).length,
+    drawn: (div.calcdata || []).length,
+    marks: div.querySelectorAll('.plot path, .plot .point').length,
+    width: div.getBoundingClientRect().width,
+}))"""
+OVERFLOW = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
+
+
+def faults(page: Page) -> list[str]:
+    """What is wrong with the charts and the layout of an open page."""
+    found = []
+    charts = page.evaluate(CHARTS)
+    expected = page.content().count("Plotly.newPlot(\"")
+    if not charts or len(charts) != expected:
+        found.append(f"{len(charts)} charts on the page, {expected} in its source")
+    for chart in charts:
+        if chart["given"] == 0 or chart["drawn"] != chart["given"] or chart["marks"] == 0 or chart["width"] < 100:
+            found.append(f"chart not drawn: {chart}")
+    overflow = page.evaluate(OVERFLOW)
+    if overflow > 0:
+        found.append(f"the page is {overflow} px wider than its window")
+    return found
+
+
+def hover(page: Page) -> list[str]:
+    """A chart must answer to the pointer."""
+    chart = page.locator("#headers-0 .nsewdrag").first
+    chart.scroll_into_view_if_needed()
+    box = chart.bounding_box()
+    rows = page.evaluate("document.getElementById('headers-0').data[0].y.length")
+    # The middle of the first bar, from left to right.
+    for step in range(1, 20):
+        page.mouse.move(box["x"] + box["width"] * step / 20, box["y"] + box["height"] / rows / 2)
+        page.wait_for_timeout(60)
+        if page.locator("#headers-0 .hoverlayer .hovertext").count() > 0:
+            return []
+    return ["a chart did not answer to the pointer"]
+
+
+def open_page(context: BrowserContext, path: pathlib.Path, pictures: pathlib.Path, device: str) -> list[str]:
+    found: list[str] = []
+    page = context.new_page()
+    page.on("console", lambda message: message.type in ("error", "warning") and found.append(f"console: {message.text}"))
+    page.on("pageerror", lambda error: found.append(f"error: {error}"))
+    own = path.resolve().as_uri()
+    page.on("request", lambda r: r.url.split("#")[0] != own and not r.url.startswith(("data:", "blob:")) and found.append(f"request: {r.url}"))
+    page.goto(own)
+    page.wait_for_timeout(500)
+    found += faults(page)
+    name = f"{path.parent.name}-{device}"
+    page.screenshot(path=pictures / f"{name}.png", full_page=True)
+    if device == "desktop":
+        page.pdf(path=pictures / f"{name}.pdf", prefer_css_page_size=True)
+        found += hover(page)
+    page.close()
+    return [f"{name}: {fault}" for fault in found]
+
+
+def main() -> int:
+    pictures = pathlib.Path(sys.argv[1])
+    pages = [pathlib.Path(page) for page in sys.argv[2:]]
+    pictures.mkdir(parents=True, exist_ok=True)
+    found = []
+    with sync_playwright() as playwright:
+        for device, (width, height) in WIDTHS.items():
+            with tempfile.TemporaryDirectory() as profile:
+                context = playwright.chromium.launch_persistent_context(
+                    profile,
+                    executable_path=CHROMIUM,
+                    headless=True,
+                    args=FLAGS,
+                    viewport={"width": width, "height": height},
+                    has_touch=device == "phone",
+                    is_mobile=device == "phone",
+                    offline=True,
+                )
+                for page in pages:
+                    found += open_page(context, page, pictures, device)
+                context.close()
+    for fault in found:
+        print(fault, file=sys.stderr)
+    print(f"{len(pages)} pages at {len(WIDTHS)} widths: {len(found)} faults; pictures in {pictures}")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,200 @@
+//! `desim compare`: runs the settings of a study, or several scenarios, and says how they differ.
+
+use std::io::{self, IsTerminal, Write};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
+use serde_json::json;
+
+use super::failure::Failure;
+use super::settings::Settings;
+use super::shown::Format;
+use crate::export::{self, StudyFolder, StudyManifest};
+use crate::metrics::comparison::Comparison;
+use crate::report;
+use crate::scenario::{Plan, contents, is_study, load_study, plan_of_files};
+
+/// What `desim compare --help` says.
+pub const LONG_ABOUT: &str = "\
+Runs every setting of a study file, or several scenario files, and compares them figure by figure: estimates with intervals, \
+differences with effect size and adjusted p-value, and in plain words which setting is better, by how much, and how sure that is; \
+or that no difference shows, and how many trials would show one.
+
+All settings of a study have the same seed, so that trials of one number share their random numbers and are compared in pairs. \
+Scenario files keep their own seeds and trials: where seeds are equal they are paired, else independent.
+
+Results of each setting go to a folder of its own below the study's, beside comparison.json and comparison.parquet. Finished trials \
+are kept: after an interruption the same command goes on where it stopped, to the same bytes. Results are never overwritten without \
+--force.";
+
+/// Arguments of `desim compare`.
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// A study file, or two scenario files or more (RON)
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Number of trials of each setting, instead of the study's or the scenarios'
+    #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<u32>::new().range(1..=1_000_000))]
+    pub trials: Option<u32>,
+    /// Trials that run at a time, of all settings together [default: one for each processor]; results do not depend on it
+    #[arg(long, value_name = "J")]
+    pub jobs: Option<NonZeroUsize>,
+    /// Folder for the results [default: results/NAME, the study's name]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Key of a figure to compare, instead of the study's; may be given many times, first the one that it is about
+    #[arg(long = "figure", value_name = "KEY")]
+    pub figures: Vec<String>,
+    /// Add trials until the interval of the first figure is no wider than W, in its unit, in every setting
+    #[arg(long, value_name = "W", value_parser = width)]
+    pub until_width: Option<f64>,
+    /// Most trials of a setting that --until-width may come to
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = RangedU64ValueParser::<u32>::new().range(1..=1_000_000))]
+    pub most_trials: u32,
+    /// What to print on standard output
+    #[arg(long, value_enum, default_value_t)]
+    pub format: Format,
+    /// Show no progress and, with `--format text`, no report
+    #[arg(long)]
+    pub quiet: bool,
+    /// Delete the results that are in the folder, and run again
+    #[arg(long)]
+    pub force: bool,
+}
+
+fn width(text: &str) -> Result<f64, String> {
+    let width = text
+        .parse::<f64>()
+        .ok()
+        .filter(|width| width.is_finite() && *width > 0.0);
+    width.ok_or_else(|| "expected a number above 0".to_owned())
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// If the input is wrong, a run fails or is interrupted, or the results cannot be written.
+pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
+    let plan = plan(arguments)?;
+    let default_out = || PathBuf::from("results").join(&plan.name);
+    let folder = StudyFolder::new(arguments.out.clone().unwrap_or_else(default_out));
+    let names = plan.settings.iter().map(|setting| setting.name.clone()).collect();
+    let manifest = StudyManifest::new(described(&plan, arguments), names);
+    let comparison = match finished(&folder, &manifest, arguments)? {
+        Some(comparison) => comparison,
+        None => Settings::open(&folder, &plan, arguments)?.compare(manifest)?,
+    };
+    print(&comparison, &folder, arguments)
+}
+
+/// What is to be compared.
+fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
+    let plan = match &arguments.files[..] {
+        [file] if is_study(&contents(file)?) => load_study(file)?,
+        [file] => {
+            return Err(Failure::Input(format!(
+                "error: {} holds no study\nGive a study file, `Study( ... )`, or two scenario files or more.",
+                file.display()
+            )));
+        }
+        files => {
+            for file in files {
+                if is_study(&contents(file)?) {
+                    return Err(Failure::Input(format!(
+                        "error: {} is a study, and not a scenario\nGive one study file alone, or scenario files.",
+                        file.display()
+                    )));
+                }
+            }
+            plan_of_files(files)?
+        }
+    };
+    let plan = plan.with_figures(&arguments.figures)?;
+    Ok(match arguments.trials {
+        Some(trials) => plan.with_trials(trials),
+        None => plan,
+    })
+}
+
+/// What the results depend on, beside the settings' scenarios.
+fn described(plan: &Plan, arguments: &CompareArguments) -> serde_json::Value {
+    let until_width = arguments
+        .until_width
+        .map(|width| json!({"width": width, "most_trials": arguments.most_trials}));
+    json!({
+        "name": plan.name,
+        "question": plan.question,
+        "factors": plan.factors,
+        "trials": plan.settings.iter().map(|setting| setting.scenario.trials).collect::<Vec<_>>(),
+        "figures": plan.figures,
+        "reference": plan.reference,
+        "relevant": plan.relevant,
+        "pareto": plan.pareto,
+        "until_width": until_width,
+    })
+}
+
+/// The comparison, if it is there and finished. The folder is then ready for the others: it holds nothing, or trials of the same
+/// study.
+fn finished(
+    folder: &StudyFolder,
+    asked: &StudyManifest,
+    arguments: &CompareArguments,
+) -> Result<Option<Comparison>, Failure> {
+    let Some(there) = folder.contents()? else {
+        return Ok(None);
+    };
+    if arguments.force {
+        for name in &there.settings {
+            // Opening the trials makes sure that nobody is running them.
+            let trials = folder.setting(name).trials();
+            if trials.exists() {
+                drop(crate::experiment::Parts::open(&trials)?);
+            }
+        }
+        folder.clear(&there)?;
+        return Ok(None);
+    }
+    let differences = there.differences(asked);
+    if !differences.is_empty() {
+        return Err(Failure::Input(format!(
+            "error: {} holds results of another study:\n  {}\nChoose another folder with --out, or replace them with --force.",
+            folder.path().display(),
+            differences.join("\n  "),
+        )));
+    }
+    if there.finished {
+        arguments.remark(&format!("{} holds these results already", folder.path().display()));
+        return Ok(folder.comparison()?);
+    }
+    Ok(None)
+}
+
+impl CompareArguments {
+    /// Says something in passing.
+    pub fn remark(&self, words: &str) {
+        if !self.quiet {
+            eprintln!("{words}");
+        }
+    }
+}
+
+fn print(comparison: &Comparison, folder: &StudyFolder, arguments: &CompareArguments) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match arguments.format {
+        Format::Json => out.write_all(&export::json(comparison))?,
+        Format::Text if arguments.quiet => {}
+        Format::Text => {
+            let text = report::comparison(&report::ComparisonInput {
+                comparison,
+                folder: folder.path(),
+                files: &folder.files(),
+                colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+            });
+            out.write_all(text.as_bytes())?;
+        }
+    }
+    Ok(out.flush()?)
+}

@@ -1,0 +1,25 @@
+//! In place of reading tables, in a build without the `parquet` feature: nothing is read.
+
+use std::collections::BTreeMap;
+
+use crate::metrics::TrialRecord;
+
+/// What the tables call topics and roles, in the order of their numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NameLists {
+    /// Topics.
+    pub topics: Vec<String>,
+    /// Roles.
+    pub roles: Vec<String>,
+}
+
+/// Names of the tables that are read: one, to say that it cannot be.
+pub const READ: [&str; 1] = ["trials.parquet"];
+
+/// Nothing.
+///
+/// # Errors
+/// Always.
+pub fn records(_: &mut BTreeMap<String, Vec<u8>>, _: &NameLists) -> Result<Vec<TrialRecord>, (&'static str, String)> {
+    Err((READ[0], "this desim was built without Parquet".to_owned()))
+}

@@ -1,0 +1,215 @@
+//! Settings in the plane of two figures, with their intervals, and those among them that no other beats.
+
+use svg::{Document, Node};
+
+use super::shapes::{element, line, marker, path, polyline, text};
+use super::style::{AXIS, Marker, Shape, Stroke, TEXT};
+use crate::geometry::Vec2;
+use crate::metrics::comparison::{Comparison, ParetoPoint};
+use crate::metrics::figures::{Better, Figure};
+
+/// Of the plane, pixels.
+const ACROSS: f64 = 560.0;
+const UP: f64 = 400.0;
+const LEFT: f64 = 84.0;
+const TOP: f64 = 62.0;
+const WIDTH: f64 = LEFT + ACROSS + 176.0;
+const HEIGHT: f64 = TOP + UP + 56.0;
+const FRONT: &str = "#d55e00";
+const BEATEN: &str = "#6b6b6b";
+
+/// Draws the plane, if the comparison has one and a setting in it.
+#[must_use]
+pub fn draw(comparison: &Comparison) -> Option<Document> {
+    let pareto = comparison.pareto.as_ref().filter(|pareto| !pareto.points.is_empty())?;
+    let plane = Plane {
+        comparison,
+        x: Axis::of(comparison, comparison.figure(&pareto.x)?, &pareto.points, |point| {
+            point.x
+        }),
+        y: Axis::of(comparison, comparison.figure(&pareto.y)?, &pareto.points, |point| {
+            point.y
+        }),
+    };
+    Some(plane.document(&pareto.points))
+}
+
+/// One of the two figures, and what part of it the picture shows.
+struct Axis<'a> {
+    figure: &'a Figure,
+    low: f64,
+    high: f64,
+}
+
+impl<'a> Axis<'a> {
+    fn of(
+        comparison: &Comparison,
+        figure: &'a Figure,
+        points: &[ParetoPoint],
+        value: impl Fn(&ParetoPoint) -> f64,
+    ) -> Self {
+        let ends = points.iter().flat_map(|point| {
+            let [low, high] = interval(comparison, point, figure);
+            [Some(value(point)), low, high].into_iter().flatten()
+        });
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| {
+            (low.min(end), high.max(end))
+        });
+        let margin = if high > low {
+            0.06 * (high - low)
+        } else {
+            0.5 * high.abs().max(1e-9)
+        };
+        Self {
+            figure,
+            low: low - margin,
+            high: high + margin,
+        }
+    }
+
+    /// Where a value lies, from 0 to 1.
+    fn share(&self, value: f64) -> f64 {
+        (value - self.low) / (self.high - self.low)
+    }
+
+    fn ticks(&self) -> Vec<(f64, String)> {
+        let step = 10_f64.powf(((self.high - self.low) / 4.0).log10().floor());
+        let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * step);
+        let fits = |step: &f64| (self.high - self.low) / step <= 7.0;
+        let step = steps.into_iter().find(fits).unwrap_or(steps[3]);
+        let digits = (-step.log10().floor()).max(0.0) as usize;
+        let first = (self.low / step).ceil() as i64;
+        let last = (self.high / step).floor() as i64;
+        (first..=last)
+            .map(|tick| (tick as f64 * step, format!("{:.digits$}", tick as f64 * step)))
+            .collect()
+    }
+
+    fn title(&self) -> String {
+        let better = match self.figure.better {
+            Better::Lower => "less is better",
+            Better::Higher => "more is better",
+        };
+        match self.figure.unit.as_ref() {
+            "1" => format!("{} ({better})", self.figure.name),
+            unit => format!("{}, {unit} ({better})", self.figure.name),
+        }
+    }
+}
+
+/// The interval of a point's setting in a figure.
+fn interval(comparison: &Comparison, point: &ParetoPoint, figure: &Figure) -> [Option<f64>; 2] {
+    let setting = comparison.setting(&point.setting);
+    let estimated = setting.and_then(|setting| setting.figure(&figure.key));
+    estimated.map_or([None; 2], |estimated| estimated.estimate.ci95)
+}
+
+struct Plane<'a> {
+    comparison: &'a Comparison,
+    x: Axis<'a>,
+    y: Axis<'a>,
+}
+
+impl Plane<'_> {
+    fn pixel(&self, x: f64, y: f64) -> Vec2 {
+        Vec2::new(LEFT + ACROSS * self.x.share(x), TOP + UP * (1.0 - self.y.share(y)))
+    }
+
+    fn document(&self, points: &[ParetoPoint]) -> Document {
+        let mut document = Document::new()
+            .set("viewBox", format!("0 0 {WIDTH:.0} {HEIGHT:.0}"))
+            .set("width", format!("{WIDTH:.0}"))
+            .set("height", format!("{HEIGHT:.0}"))
+            .set("font-family", "Helvetica, Arial, sans-serif");
+        document.append(element(
+            "rect",
+            [("width", "100%"), ("height", "100%"), ("fill", "#ffffff")],
+        ));
+        document.append(text(Vec2::new(LEFT, 26.0), 17.0, "start", TEXT, &self.comparison.study));
+        let subtitle = "settings with 95 % intervals; joined: those that no other beats in both";
+        document.append(text(Vec2::new(LEFT, 47.0), 13.0, "start", AXIS, subtitle));
+        self.axes(&mut document);
+        self.front(&mut document, points);
+        for point in points {
+            self.bars(&mut document, point);
+        }
+        for point in points {
+            self.point(&mut document, point);
+        }
+        document
+    }
+
+    fn axes(&self, document: &mut Document) {
+        let stroke = stroke(AXIS, 1.0, 1.0);
+        let (bottom, right) = (TOP + UP, LEFT + ACROSS);
+        let corner = Vec2::new(LEFT, bottom);
+        document.append(polyline(
+            &[Vec2::new(LEFT, TOP), corner, Vec2::new(right, bottom)],
+            stroke,
+        ));
+        for (value, label) in self.x.ticks() {
+            let at = Vec2::new(self.pixel(value, self.y.low).x, bottom);
+            document.append(line(at, at + Vec2::new(0.0, 5.0), stroke));
+            document.append(text(at + Vec2::new(0.0, 18.0), 12.0, "middle", AXIS, &label));
+        }
+        for (value, label) in self.y.ticks() {
+            let at = Vec2::new(LEFT, self.pixel(self.x.low, value).y);
+            document.append(line(at - Vec2::new(5.0, 0.0), at, stroke));
+            document.append(text(at + Vec2::new(-9.0, 4.0), 12.0, "end", AXIS, &label));
+        }
+        let middle = Vec2::new(LEFT + ACROSS / 2.0, bottom + 42.0);
+        document.append(text(middle, 13.0, "middle", TEXT, &self.x.title()));
+        let mut turned = text(Vec2::zeros(), 13.0, "middle", TEXT, &self.y.title());
+        turned.assign("transform", format!("translate(20,{:.1}) rotate(-90)", TOP + UP / 2.0));
+        document.append(turned);
+    }
+
+    /// The line through those that no other beats.
+    fn front(&self, document: &mut Document, points: &[ParetoPoint]) {
+        let mut front: Vec<Vec2> = points
+            .iter()
+            .filter(|point| point.on_front)
+            .map(|point| self.pixel(point.x, point.y))
+            .collect();
+        front.sort_by(|a, b| a.x.total_cmp(&b.x));
+        document.append(polyline(&front, stroke(FRONT, 1.6, 0.6)));
+    }
+
+    fn bars(&self, document: &mut Document, point: &ParetoPoint) {
+        let [x, y] = [&self.x, &self.y].map(|axis| interval(self.comparison, point, axis.figure));
+        let mut bars = Vec::new();
+        if let [Some(low), Some(high)] = x {
+            bars.push((self.pixel(low, point.y), self.pixel(high, point.y)));
+        }
+        if let [Some(low), Some(high)] = y {
+            bars.push((self.pixel(point.x, low), self.pixel(point.x, high)));
+        }
+        document.append(path(&bars, stroke(colour(point), 1.2, 0.8)));
+    }
+
+    fn point(&self, document: &mut Document, point: &ParetoPoint) {
+        let at = self.pixel(point.x, point.y);
+        let shape = if point.on_front { Shape::Disc } else { Shape::Ring };
+        document.append(marker(
+            at,
+            Marker {
+                shape,
+                colour: colour(point),
+                size: 5.0,
+            },
+        ));
+        let label = self
+            .comparison
+            .setting(&point.setting)
+            .map_or(point.setting.as_str(), |setting| &setting.label);
+        document.append(text(at + Vec2::new(8.0, 15.0), 12.0, "start", TEXT, label));
+    }
+}
+
+fn colour(point: &ParetoPoint) -> &'static str {
+    if point.on_front { FRONT } else { BEATEN }
+}
+
+fn stroke(colour: &'static str, width: f64, opacity: f64) -> Stroke {
+    Stroke { colour, width, opacity }
+}

@@ -1,0 +1,284 @@
+//! Settings compared: what `comparison.json` holds and the report of a study shows. Everything follows from what each trial tells of
+//! each figure, and depends on no machine. Keys and their order are stable.
+
+mod pair;
+mod setting;
+
+pub use pair::{Gain, Pair, Plan, Tests, Verdict};
+pub use setting::{Estimated, Setting, Survival};
+
+use serde::{Deserialize, Serialize};
+
+use super::figures::{Figure, Sample};
+use super::statistics::{Resamples, holm};
+use super::summary::Named;
+
+/// Below this, a p-value adjusted for the family shows a difference.
+pub const SIGNIFICANT: f64 = 0.05;
+
+/// Settings compared by their figures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// Name of the study.
+    pub study: String,
+    /// The question that it answers.
+    pub question: Option<String>,
+    /// What it found, in a sentence or a few; filled in by the report.
+    pub finding: String,
+    /// Whether trials of the same number share their random numbers, all settings having one seed.
+    pub paired: bool,
+    /// What was varied.
+    pub factors: Vec<Factor>,
+    /// What the figures are.
+    pub figures: Vec<Figure>,
+    /// The key of the figure that the study is about.
+    pub primary: String,
+    /// The keys of all figures that are tested, the primary one first.
+    pub compared: Vec<String>,
+    /// The setting that the others are held against; absent where all are held against each other.
+    pub reference: Option<String>,
+    /// A relative difference worth finding: trials are planned for it.
+    pub relevant: f64,
+    /// The settings, in the order of the study.
+    pub settings: Vec<Setting>,
+    /// The differences, figure by figure. All of them are one family, over which p-values are adjusted.
+    pub pairs: Vec<Pair>,
+    /// Which settings no other beats in two figures at once, if the study asks.
+    pub pareto: Option<Pareto>,
+    /// When trials stopped being added, if they were.
+    pub stopping: Option<Stopping>,
+}
+
+/// What was varied.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Factor {
+    /// Its name.
+    pub name: String,
+    /// Labels of its levels.
+    pub levels: Vec<String>,
+}
+
+/// Settings as points in the plane of two figures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pareto {
+    /// Key of the figure across.
+    pub x: String,
+    /// Key of the figure upwards.
+    pub y: String,
+    /// The settings that have both.
+    pub points: Vec<ParetoPoint>,
+}
+
+/// A setting in the plane of two figures.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ParetoPoint {
+    /// Its name.
+    pub setting: String,
+    /// Its value of the figure across.
+    pub x: f64,
+    /// Its value of the figure upwards.
+    pub y: f64,
+    /// Whether no other setting is better in one figure and at least as good in the other, by their point estimates.
+    pub on_front: bool,
+}
+
+/// How trials were added until a figure was known well enough. An interval looked at so often is a little too narrow.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stopping {
+    /// Key of the figure.
+    pub figure: String,
+    /// The width that the interval was to have in every setting.
+    pub width: f64,
+    /// The widest interval at the end; absent where one had none.
+    pub widest: Option<f64>,
+    /// Trials of a setting at the end.
+    pub trials: u32,
+    /// Most trials that a setting may have.
+    pub cap: u32,
+    /// Whether the width was reached.
+    pub reached: bool,
+}
+
+/// A setting's trials.
+#[derive(Clone, Debug)]
+pub struct Trials {
+    /// Its name; its results lie in the folder of that name.
+    pub name: String,
+    /// What people call it.
+    pub label: String,
+    /// The label of its level of each factor.
+    pub levels: Vec<String>,
+    /// Its seed.
+    pub seed: u64,
+    /// What each trial tells of each figure: `samples[figure][trial]`.
+    pub samples: Vec<Vec<Sample>>,
+}
+
+/// What is to be compared, and how.
+#[derive(Clone, Debug)]
+pub struct Design {
+    /// Name of the study.
+    pub study: String,
+    /// The question that it answers.
+    pub question: Option<String>,
+    /// What was varied.
+    pub factors: Vec<Factor>,
+    /// The figures of all settings.
+    pub figures: Vec<Figure>,
+    /// Places of the figures that are tested, the primary one first.
+    pub compared: Vec<usize>,
+    /// Place of the setting that the others are held against.
+    pub reference: Option<usize>,
+    /// A relative difference worth finding.
+    pub relevant: f64,
+    /// Places of two figures.
+    pub pareto: Option<[usize; 2]>,
+}
+
+impl Comparison {
+    /// Compares settings, all of which have the figures of `design`.
+    #[must_use]
+    pub fn of(design: &Design, trials: &[Trials], stopping: Option<Stopping>) -> Self {
+        let trials = restrict(trials);
+        let settings: Vec<Setting> = trials.iter().map(|trials| Setting::of(design, trials)).collect();
+        let key = |&figure: &usize| design.figures[figure].key.clone();
+        let pareto = design.pareto.map(|axes| Pareto::of(design, axes, &settings));
+        Self {
+            study: design.study.clone(),
+            question: design.question.clone(),
+            finding: String::new(),
+            paired: trials.windows(2).all(|pair| pair[0].seed == pair[1].seed),
+            factors: design.factors.clone(),
+            figures: design.figures.clone(),
+            primary: design.compared.first().map(key).unwrap_or_default(),
+            compared: design.compared.iter().map(key).collect(),
+            reference: design.reference.map(|reference| trials[reference].name.clone()),
+            relevant: design.relevant,
+            pairs: pairs(design, &trials),
+            settings,
+            pareto,
+            stopping,
+        }
+    }
+
+    /// A figure by its key.
+    #[must_use]
+    pub fn figure(&self, key: &str) -> Option<&Figure> {
+        self.figures.iter().find(|figure| figure.key == key)
+    }
+
+    /// A setting by its name.
+    #[must_use]
+    pub fn setting(&self, name: &str) -> Option<&Setting> {
+        self.settings.iter().find(|setting| setting.name == name)
+    }
+
+    /// The differences in a figure.
+    pub fn pairs_in<'a>(&'a self, key: &'a str) -> impl Iterator<Item = &'a Pair> {
+        self.pairs.iter().filter(move |pair| pair.figure == key)
+    }
+}
+
+/// All differences that the design asks for, their p-values adjusted as one family.
+fn pairs(design: &Design, trials: &[Trials]) -> Vec<Pair> {
+    let settings = 0..trials.len();
+    let held: Vec<(usize, usize)> = match design.reference {
+        Some(reference) => settings
+            .filter(|&it| it != reference)
+            .map(|it| (reference, it))
+            .collect(),
+        None => settings
+            .clone()
+            .flat_map(|a| (a + 1..trials.len()).map(move |b| (a, b)))
+            .collect(),
+    };
+    let all = design
+        .compared
+        .iter()
+        .flat_map(|figure| held.iter().map(move |held| (*figure, *held)));
+    let all: Vec<_> = all.collect();
+    let alpha = SIGNIFICANT / all.len().max(1) as f64;
+    let mut pairs: Vec<Pair> = all
+        .into_iter()
+        .map(|(figure, (a, b))| Pair::of(design, figure, [&trials[a], &trials[b]], alpha))
+        .collect();
+    let adjusted = holm(&pairs.iter().map(|pair| pair.p).collect::<Vec<_>>());
+    for (pair, p) in pairs.iter_mut().zip(adjusted) {
+        pair.judge(p, design);
+    }
+    pairs
+}
+
+/// Restricts what was cut off, in any setting, to the shortest time that a trial was watched in vain: up to there every trial has a
+/// value, so that its mean, the restricted mean, leaves nothing out and flatters nobody (Irwin, 1949; Royston and Parmar, 2013).
+fn restrict(trials: &[Trials]) -> Vec<Trials> {
+    let mut restricted = trials.to_vec();
+    let figures = trials.first().map_or(0, |first| first.samples.len());
+    for figure in 0..figures {
+        let limit = limit(trials, figure);
+        let samples = restricted.iter_mut().flat_map(|trials| &mut trials.samples[figure]);
+        for sample in samples.filter(|sample| sample.part[1] > 0.0) {
+            sample.is_censored |= sample.part[0] > limit;
+            sample.part[0] = sample.part[0].min(limit);
+        }
+    }
+    restricted
+}
+
+/// The shortest time that a trial was watched in vain; infinite where none was.
+fn limit(trials: &[Trials], figure: usize) -> f64 {
+    let all = trials.iter().flat_map(|trials| &trials.samples[figure]);
+    let cut_off = all.filter(|sample| sample.is_censored).map(|sample| sample.part[0]);
+    cut_off.fold(f64::INFINITY, f64::min)
+}
+
+/// The widest interval of a figure over the settings, for what would be compared so far; `None` where one has none.
+#[must_use]
+pub fn widest(trials: &[Trials], figure: usize) -> Option<f64> {
+    let trials = restrict(trials);
+    let mut widths = trials.iter().map(|trials| {
+        let samples = &trials.samples[figure];
+        let [low, high] = setting::estimate(samples, &Resamples::of(&[samples.len()])).ci95;
+        Some(high? - low?)
+    });
+    widths.try_fold(0.0, |widest: f64, width| Some(widest.max(width?)))
+}
+
+impl Pareto {
+    fn of(design: &Design, axes: [usize; 2], settings: &[Setting]) -> Self {
+        let [x, y] = axes.map(|axis| &design.figures[axis]);
+        let value = |setting: &Setting, figure: &Figure| setting.figure(&figure.key)?.estimate.value;
+        let places: Vec<_> = settings
+            .iter()
+            .filter_map(|setting| Some((setting, [value(setting, x)?, value(setting, y)?])))
+            .collect();
+        let beaten = |place: &[f64; 2]| {
+            places.iter().any(|(_, other)| {
+                let better = [x, y].map(|figure| figure.better);
+                let ahead = [0, 1].map(|axis| pair::gain_of(better[axis], other[axis] - place[axis]));
+                ahead.iter().all(|ahead| *ahead >= 0.0) && ahead.iter().any(|ahead| *ahead > 0.0)
+            })
+        };
+        Self {
+            x: x.key.clone(),
+            y: y.key.clone(),
+            points: places
+                .iter()
+                .map(|(setting, place)| ParetoPoint {
+                    setting: setting.name.clone(),
+                    x: place[0],
+                    y: place[1],
+                    on_front: !beaten(place),
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Figures by their keys.
+fn by_key<T>(figures: &[Figure], of: impl Fn(usize) -> T) -> Named<T> {
+    Named::of(figures.iter().map(|figure| figure.key.as_str()), of)
+}
+
+#[cfg(test)]
+mod tests;

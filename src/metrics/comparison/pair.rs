@@ -1,0 +1,264 @@
+//! One setting held against another by one figure.
+
+use serde::{Deserialize, Serialize};
+
+use super::setting::observations;
+use super::{Design, SIGNIFICANT, Trials};
+use crate::metrics::figures::{Better, COMPLETION, Sample};
+use crate::metrics::statistics::{
+    Estimate, POWER, Part, Resamples, cliffs_delta, log_rank, mann_whitney, paired_permutation, ratio_of_sums,
+    trials_needed, wilcoxon,
+};
+
+/// How a setting differs from another in one figure.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pair {
+    /// Key of the figure.
+    pub figure: String,
+    /// Name of the setting.
+    pub setting: String,
+    /// Name of the setting that it is held against.
+    pub against: String,
+    /// Whether trials are paired by their number; otherwise they are independent.
+    pub paired: bool,
+    /// Its value less that of the other, with its BCa bootstrap interval. `n` is the number of pairs, or of the fewer trials.
+    pub difference: Estimate,
+    /// The difference over the other's value.
+    pub relative: Option<f64>,
+    /// Cliff's δ with its BCa bootstrap interval: 1 where every trial's value is above all of the other's, −1 where below.
+    pub cliffs_delta: Estimate,
+    /// Two-sided p-value: of the permutation test where paired, else Mann and Whitney's.
+    pub p: Option<f64>,
+    /// The p-value by Holm's adjustment over all differences of the study.
+    pub p_adjusted: Option<f64>,
+    /// The p-values of each test that applies, none of them adjusted.
+    pub tests: Tests,
+    /// What common random numbers gain; absent where trials are independent.
+    pub gain: Option<Gain>,
+    /// Trials that would show a difference worth finding.
+    pub plan: Option<Plan>,
+    /// What to make of it.
+    pub verdict: Verdict,
+    /// The same in words; filled in by the report.
+    pub words: String,
+}
+
+/// Two-sided p-values, none adjusted.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tests {
+    /// Paired permutation test of the difference.
+    pub permutation: Option<f64>,
+    /// Wilcoxon's signed-rank test of the trials' own values.
+    pub wilcoxon: Option<f64>,
+    /// Mann and Whitney's test of the trials' own values, for independent trials.
+    pub mann_whitney: Option<f64>,
+    /// The log-rank test, for what may be cut off. It takes trials as independent.
+    pub log_rank: Option<f64>,
+}
+
+/// Variances of the mean difference times the number of trials, from the same data. Of ratios of sums, to first order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Gain {
+    /// Var(X − Y) of pairs that share their random numbers.
+    pub paired_variance: f64,
+    /// Var(X) + Var(Y), as if seeds were independent.
+    pub independent_variance: f64,
+    /// How many times fewer trials common random numbers need for the same interval: the latter over the former; absent where
+    /// pairs do not vary.
+    pub ratio: Option<f64>,
+}
+
+/// Trials for a difference worth finding.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The difference, in the figure's unit.
+    pub size: f64,
+    /// Probability that so many trials find it.
+    pub power: f64,
+    /// Level of the test, the worst that Holm's adjustment may ask for.
+    pub alpha: f64,
+    /// Trials of each setting.
+    pub trials: u64,
+}
+
+/// What to make of a difference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The setting is better than the other.
+    Better,
+    /// It is worse.
+    Worse,
+    /// The trials show no difference, which does not mean that there is none.
+    NoDetectableDifference,
+    /// One of the two has no value of the figure.
+    NotComparable,
+}
+
+/// How far a change takes a figure the better way.
+pub(super) fn gain_of(better: Better, change: f64) -> f64 {
+    match better {
+        Better::Lower => -change,
+        Better::Higher => change,
+    }
+}
+
+impl Pair {
+    /// Holds the second of two settings against the first, by one figure, in a family tested at level `alpha` each.
+    pub(super) fn of(design: &Design, figure: usize, [against, setting]: [&Trials; 2], alpha: f64) -> Self {
+        let paired = against.seed == setting.seed;
+        let mut samples = [&against.samples[figure][..], &setting.samples[figure][..]];
+        if paired {
+            let both = samples[0].len().min(samples[1].len());
+            samples = samples.map(|samples| &samples[..both]);
+        }
+        let [a, b] = samples;
+        let parts = samples.map(|samples| samples.iter().map(|sample| sample.part).collect::<Vec<Part>>());
+        let resamples = Resamples::of(&if paired { vec![a.len()] } else { vec![a.len(), b.len()] });
+        let base = ratio_of_sums(parts[0].iter().copied());
+        let difference = difference(&parts, &resamples);
+        let tests = Tests::of(design.figures[figure].key == COMPLETION, paired, samples, &parts);
+        let gain = paired.then(|| Gain::of(&parts)).flatten();
+        let deviation = if paired {
+            gain.as_ref().map(|gain| gain.paired_variance.sqrt())
+        } else {
+            Gain::of(&parts).map(|gain| gain.independent_variance.sqrt())
+        };
+        Self {
+            figure: design.figures[figure].key.clone(),
+            setting: setting.name.clone(),
+            against: against.name.clone(),
+            paired,
+            relative: difference
+                .value
+                .map(|value| value / base.abs())
+                .filter(|share| share.is_finite()),
+            difference,
+            cliffs_delta: delta(samples, &resamples),
+            p: if paired { tests.permutation } else { tests.mann_whitney },
+            p_adjusted: None,
+            tests,
+            gain,
+            plan: deviation.and_then(|deviation| Plan::of((design.relevant * base).abs(), deviation, alpha)),
+            verdict: Verdict::NotComparable,
+            words: String::new(),
+        }
+    }
+
+    /// Judges the difference by its adjusted p-value.
+    pub(super) fn judge(&mut self, p_adjusted: Option<f64>, design: &Design) {
+        self.p_adjusted = p_adjusted;
+        let figure = design.figures.iter().find(|figure| figure.key == self.figure);
+        let (Some(p), Some(difference), Some(figure)) = (p_adjusted, self.difference.value, figure) else {
+            return;
+        };
+        self.verdict = match gain_of(figure.better, difference) {
+            _ if p >= SIGNIFICANT => Verdict::NoDetectableDifference,
+            gain if gain > 0.0 => Verdict::Better,
+            gain if gain < 0.0 => Verdict::Worse,
+            _ => Verdict::NoDetectableDifference,
+        };
+    }
+}
+
+/// The choice of trials in each of two groups, from the resample of one group of pairs or of two groups.
+fn both(chosen: &[Vec<usize>]) -> [&[usize]; 2] {
+    let last = chosen.len() - 1;
+    [&chosen[0], &chosen[last]]
+}
+
+fn difference(parts: &[Vec<Part>; 2], resamples: &Resamples) -> Estimate {
+    let [a, b] = parts.each_ref().map(|parts| ratio_of_sums(parts.iter().copied()));
+    let of = |group: usize, chosen: &[usize]| ratio_of_sums(chosen.iter().map(|&trial| parts[group][trial]));
+    Estimate {
+        value: Some(b - a).filter(|value| value.is_finite()),
+        ci95: resamples.interval(|chosen| {
+            let [first, second] = both(chosen);
+            of(1, second) - of(0, first)
+        }),
+        n: parts[0].len().min(parts[1].len()) as u64,
+    }
+}
+
+fn delta(samples: [&[Sample]; 2], resamples: &Resamples) -> Estimate {
+    let of = |chosen: [&mut dyn Iterator<Item = usize>; 2]| {
+        let [a, b] = chosen;
+        let a: Vec<f64> = a.filter_map(|trial| samples[0][trial].value()).collect();
+        let b: Vec<f64> = b.filter_map(|trial| samples[1][trial].value()).collect();
+        cliffs_delta(&a, &b)
+    };
+    Estimate {
+        value: of([&mut (0..samples[0].len()), &mut (0..samples[1].len())]),
+        ci95: resamples.interval(|chosen| {
+            let [first, second] = both(chosen);
+            of([&mut first.iter().copied(), &mut second.iter().copied()]).unwrap_or(f64::NAN)
+        }),
+        n: samples[0].len().min(samples[1].len()) as u64,
+    }
+}
+
+impl Tests {
+    fn of(may_be_cut_off: bool, paired: bool, samples: [&[Sample]; 2], parts: &[Vec<Part>; 2]) -> Self {
+        let values = |samples: &[Sample]| samples.iter().filter_map(Sample::value).collect::<Vec<f64>>();
+        let pairs = samples[0].iter().zip(samples[1]);
+        let differences = || {
+            pairs
+                .filter_map(|(a, b)| Some(b.value()? - a.value()?))
+                .collect::<Vec<f64>>()
+        };
+        Self {
+            permutation: paired.then(|| paired_permutation(&parts[0], &parts[1])).flatten(),
+            wilcoxon: paired.then(|| wilcoxon(&differences())).flatten(),
+            mann_whitney: (!paired)
+                .then(|| mann_whitney(&values(samples[0]), &values(samples[1])))
+                .flatten(),
+            log_rank: may_be_cut_off
+                .then(|| log_rank(&observations(samples[0]), &observations(samples[1])))
+                .flatten(),
+        }
+    }
+}
+
+impl Gain {
+    /// `None` from fewer than two trials, or without a value in one of the settings.
+    fn of(parts: &[Vec<Part>; 2]) -> Option<Self> {
+        let [x, y] = [influences(&parts[0])?, influences(&parts[1])?];
+        let independent_variance = variance(&x)? + variance(&y)?;
+        let differences: Vec<f64> = x.iter().zip(&y).map(|(x, y)| y - x).collect();
+        let paired_variance = variance(&differences)?;
+        Some(Self {
+            paired_variance,
+            independent_variance,
+            // Pairs that differ by rounding alone do not vary.
+            ratio: (paired_variance > 1e-20 * independent_variance).then(|| independent_variance / paired_variance),
+        })
+    }
+}
+
+/// What each trial adds to the ratio of sums, to first order: the residual a − R b over the mean of b. Of plain values, how far
+/// each is from the mean.
+fn influences(parts: &[Part]) -> Option<Vec<f64>> {
+    let ratio = ratio_of_sums(parts.iter().copied());
+    let mean = parts.iter().map(|part| part[1]).sum::<f64>() / parts.len() as f64;
+    let residuals = parts.iter().map(|[a, b]| (a - ratio * b) / mean);
+    ratio.is_finite().then(|| residuals.collect())
+}
+
+/// The sample variance; `None` from fewer than two values.
+fn variance(values: &[f64]) -> Option<f64> {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (values.len() > 1).then(|| squares / (n - 1.0))
+}
+
+impl Plan {
+    fn of(size: f64, deviation: f64, alpha: f64) -> Option<Self> {
+        Some(Self {
+            size,
+            power: POWER,
+            alpha,
+            trials: trials_needed(size, deviation, alpha)?,
+        })
+    }
+}

@@ -1,0 +1,282 @@
+//! When a robot believes that a neighbour is down: failure detectors behind one interface.
+//!
+//! A protocol shows its [`Detector`] every inbox that it reads, hands it the detector's [`TIMER`], and asks it whom it
+//! suspects. Which detector that is, only the scenario knows. Detectors that listen take statuses as signs of life; SWIM
+//! sends messages of its own, which the protocol carries on the topic `probe`.
+
+mod config;
+mod expectation;
+mod nfd_s;
+mod phi;
+mod swim;
+mod timeout;
+mod watch;
+
+pub use config::{Circumstances, DetectorConfig};
+pub use expectation::{Link, Quality, nfd_s_quality};
+pub use nfd_s::NfdSConfig;
+pub use phi::{DialectConfig, DialectSetting, PhiAccrualConfig};
+pub use swim::{Call, Claim, News, Probe, SwimConfig};
+
+use std::convert::Infallible;
+use std::rc::Rc;
+
+use rand_philox::Philox;
+
+use super::{Output, Reception, TimerId};
+use crate::engine::{ActorId, SimTime};
+use nfd_s::NfdS;
+use phi::Phi;
+use swim::Swim;
+use timeout::Timeout;
+use watch::Watch;
+
+/// The one timer that a detector sets: a protocol that runs one keeps it free.
+pub const TIMER: TimerId = TimerId(0);
+
+/// A message of a protocol whose robots run a failure detector.
+pub trait Monitored {
+    /// What it is to the detector.
+    fn sign(&self) -> Sign<'_>;
+
+    /// A message that carries what the detector says.
+    fn probe(probe: Probe) -> Self;
+}
+
+/// How a message carries what a detector says. Protocols that are measured for their speed have messages without that, for
+/// scenarios whose detector says nothing: `Infallible` carries nothing and takes no room.
+pub trait Carried: Clone + std::fmt::Debug + 'static {
+    /// Carries `probe`, if that can be.
+    fn of(probe: Probe) -> Option<Self>;
+
+    /// What it carries.
+    fn probe(&self) -> &Probe;
+}
+
+impl Carried for Rc<Probe> {
+    fn of(probe: Probe) -> Option<Self> {
+        Some(Self::new(probe))
+    }
+
+    fn probe(&self) -> &Probe {
+        self
+    }
+}
+
+impl Carried for Infallible {
+    fn of(_: Probe) -> Option<Self> {
+        None
+    }
+
+    fn probe(&self) -> &Probe {
+        match *self {}
+    }
+}
+
+/// What a message is to a failure detector.
+#[derive(Clone, Copy, Debug)]
+pub enum Sign<'a> {
+    /// A status: a sign that its sender is alive, repeated as long as it is.
+    Status,
+    /// What another robot's detector says.
+    Probe(&'a Probe),
+    /// Nothing that concerns it.
+    Other,
+}
+
+/// One robot's failure detector: it notes whom the robot watches, suspects (at the exact instant) and trusts.
+#[derive(Debug)]
+pub enum Detector {
+    /// Suspects after a fixed silence.
+    Timeout(Watch<Timeout>),
+    /// Suspects a fixed time after the first status missing should have been sent.
+    NfdS(Watch<NfdS>),
+    /// Suspects when the silence is improbable.
+    PhiAccrual(Watch<Phi>),
+    /// Probes.
+    Swim(Box<Swim>),
+}
+
+impl Detector {
+    /// The detector of robot `id`, which has heard nobody yet.
+    #[must_use]
+    pub fn new(config: &DetectorConfig, circumstances: Circumstances, id: ActorId) -> Self {
+        let silence = config.usual_silence(circumstances);
+        match config {
+            DetectorConfig::Timeout(_) => Self::Timeout(Watch::new(Timeout(silence))),
+            DetectorConfig::NfdS(_) => Self::NfdS(Watch::new(NfdS { silence })),
+            DetectorConfig::PhiAccrual(config) => Self::PhiAccrual(Watch::new(Phi::new(config))),
+            DetectorConfig::Swim(config) => Self::Swim(Box::new(Swim::new(config, circumstances, id))),
+        }
+    }
+
+    /// Takes in what has arrived by `now`, in order of arrival, and answers what asks for an answer.
+    #[inline]
+    pub fn read<M: Monitored>(&mut self, now: SimTime, inbox: &[Reception<M>], output: &mut Output<M>) {
+        match self {
+            Self::Timeout(watch) => watch.read(inbox, output),
+            Self::NfdS(watch) => watch.read(inbox, output),
+            Self::PhiAccrual(watch) => watch.read(inbox, output),
+            Self::Swim(swim) => swim.read(now, inbox, output),
+        }
+    }
+
+    /// Its timer fired, and the robot has read all that arrived: suspects those whose time has run out. Draws from `random`,
+    /// which is of this wake alone.
+    pub fn expire<M: Monitored>(&mut self, now: SimTime, random: &mut Philox, output: &mut Output<M>) {
+        match self {
+            Self::Timeout(watch) => watch.expire(now, output),
+            Self::NfdS(watch) => watch.expire(now, output),
+            Self::PhiAccrual(watch) => watch.expire(now, output),
+            Self::Swim(swim) => swim.expire(now, random, output),
+        }
+    }
+
+    /// Whether it believes that `robot` is down. Of a robot that it never heard it believes nothing.
+    #[must_use]
+    pub fn suspects(&self, robot: ActorId) -> bool {
+        self.suspected_since(robot) < SimTime::NEVER
+    }
+
+    /// Whether it came to believe so before `now`: what falls due at the very instant of a control step counts from the
+    /// next one on, so that a status of exactly that age is not yet too old.
+    #[must_use]
+    pub fn suspected_before(&self, now: SimTime, robot: ActorId) -> bool {
+        self.suspected_since(robot) < now
+    }
+
+    fn suspected_since(&self, robot: ActorId) -> SimTime {
+        match self {
+            Self::Timeout(watch) => watch.suspected_since(robot),
+            Self::NfdS(watch) => watch.suspected_since(robot),
+            Self::PhiAccrual(watch) => watch.suspected_since(robot),
+            Self::Swim(swim) => swim.suspected_since(robot),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Span;
+    use crate::protocol::{Evidence, Frame, MessageSize, Note};
+    use crate::quantity::Positive;
+
+    const TIMEOUT_S: f64 = 2.5;
+    const CIRCUMSTANCES: Circumstances = Circumstances {
+        robots: 5,
+        status_interval: Span::from_nanos(100_000_000),
+    };
+
+    /// A message that is a status.
+    #[derive(Debug)]
+    struct Alive;
+
+    impl Monitored for Alive {
+        fn sign(&self) -> Sign<'_> {
+            Sign::Status
+        }
+
+        fn probe(_: Probe) -> Self {
+            unreachable!("detectors that listen say nothing")
+        }
+    }
+
+    fn at(seconds: f64) -> SimTime {
+        SimTime::from_secs(seconds)
+    }
+
+    fn detector() -> Detector {
+        Detector::new(
+            &DetectorConfig::Timeout(Positive::new(TIMEOUT_S)),
+            CIRCUMSTANCES,
+            ActorId(0),
+        )
+    }
+
+    fn status(sender: u32, sequence: u32, arrival_s: f64) -> [Reception<Alive>; 1] {
+        [Reception {
+            at: at(arrival_s),
+            frame: Frame {
+                sender: ActorId(sender),
+                sequence,
+                sent_at: SimTime::ZERO,
+                size: MessageSize::alone(4),
+                message: Alive,
+            },
+            displacement: [0.0; 2],
+        }]
+    }
+
+    /// What the detector answers to `act`: its notes, and when it wants to be woken.
+    fn answer(
+        detector: &mut Detector,
+        act: impl FnOnce(&mut Detector, &mut Output<Alive>),
+    ) -> (Vec<Note>, Option<SimTime>) {
+        let mut output = Output::default();
+        act(detector, &mut output);
+        (output.notes, output.timers.last().and_then(|timer| timer.1))
+    }
+
+    fn suspicion(robot: u32, heard_s: f64, sequence: u32) -> Note {
+        Note::Suspects {
+            robot: ActorId(robot),
+            heard: at(heard_s),
+            sequence,
+            evidence: Evidence::Silence,
+        }
+    }
+
+    #[test]
+    fn a_robot_is_watched_from_its_first_status_and_suspected_exactly_a_timeout_after_its_last() {
+        let mut detector = detector();
+        let first = answer(&mut detector, |d, out| d.read(at(9.0), &status(3, 0, 1.0), out));
+        assert_eq!(first, (vec![Note::Watches(ActorId(3))], Some(at(3.5))));
+        let second = answer(&mut detector, |d, out| d.read(at(9.0), &status(3, 1, 1.75), out));
+        assert_eq!(second, (vec![], None), "a later arrival does not move the timer");
+        assert_eq!(
+            answer(&mut detector, |d, out| d.expire(
+                at(3.5),
+                &mut Philox::from_u64_seed(1),
+                out
+            )),
+            (vec![], Some(at(4.25)))
+        );
+        assert!(!detector.suspects(ActorId(3)));
+        let expired = answer(&mut detector, |d, out| {
+            d.expire(at(4.25), &mut Philox::from_u64_seed(1), out);
+        });
+        assert_eq!(expired, (vec![suspicion(3, 1.75, 1)], None));
+        assert!(detector.suspects(ActorId(3)) && !detector.suspects(ActorId(4)));
+        assert!(!detector.suspected_before(at(4.25), ActorId(3)) && detector.suspected_before(at(4.26), ActorId(3)));
+    }
+
+    #[test]
+    fn a_suspected_robot_is_trusted_at_its_next_status_and_watched_anew() {
+        let mut detector = detector();
+        answer(&mut detector, |d, out| d.read(at(9.0), &status(3, 0, 1.0), out));
+        answer(&mut detector, |d, out| {
+            d.expire(at(3.5), &mut Philox::from_u64_seed(1), out);
+        });
+        let again = answer(&mut detector, |d, out| d.read(at(9.0), &status(3, 7, 5.0), out));
+        assert_eq!(again, (vec![Note::Trusts(ActorId(3))], Some(at(7.5))));
+        assert!(!detector.suspects(ActorId(3)));
+    }
+
+    #[test]
+    fn a_status_overtaken_on_the_way_is_a_sign_of_life_and_not_the_newest() {
+        let mut detector = detector();
+        for (sequence, arrival) in [(0, 1.0), (2, 1.2), (1, 1.3)] {
+            answer(&mut detector, |d, out| {
+                d.read(at(9.0), &status(3, sequence, arrival), out);
+            });
+        }
+        answer(&mut detector, |d, out| {
+            d.expire(at(3.5), &mut Philox::from_u64_seed(1), out);
+        });
+        let expired = answer(&mut detector, |d, out| {
+            d.expire(at(3.8), &mut Philox::from_u64_seed(1), out);
+        });
+        assert_eq!(expired, (vec![suspicion(3, 1.3, 2)], None));
+    }
+}

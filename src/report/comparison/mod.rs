@@ -1,0 +1,73 @@
+//! Settings compared, as text for people.
+
+mod tables;
+mod words;
+
+pub use words::describe;
+
+use std::path::Path;
+
+use super::layout::Page;
+use super::number::count;
+use crate::metrics::comparison::Comparison;
+
+/// What the report of a comparison is made of.
+#[derive(Debug)]
+pub struct ComparisonInput<'a> {
+    /// The comparison, [`describe`]d.
+    pub comparison: &'a Comparison,
+    /// Where the results are.
+    pub folder: &'a Path,
+    /// Names of the files there.
+    pub files: &'a [&'a str],
+    /// Whether to use colours.
+    pub colour: bool,
+}
+
+/// The report as text, at most 80 columns wide.
+#[must_use]
+pub fn comparison(input: &ComparisonInput) -> String {
+    let comparison = input.comparison;
+    let mut page = Page {
+        text: String::new(),
+        colour: input.colour,
+    };
+    page.title(&comparison.study, comparison.question.as_deref());
+    page.heading("Finding");
+    page.words(&comparison.finding);
+    tables::settings(&mut page, comparison);
+    tables::differences(&mut page, comparison);
+    tables::gains(&mut page, comparison);
+    tables::pareto(&mut page, comparison);
+    page.heading("Study");
+    page.entry("compared", &compared(comparison));
+    if let Some(stopping) = &comparison.stopping {
+        page.entry("stopped", &words::stopping(stopping, comparison));
+    }
+    page.entry("results", &input.folder.display().to_string());
+    page.entry("", &input.files.join(", "));
+    page.line("");
+    page.words("Figures in brackets are 95 % intervals over trials (BCa bootstrap; Greenwood for medians of what may be cut off).");
+    page.text
+}
+
+fn compared(comparison: &Comparison) -> String {
+    let trials = comparison.settings.iter().map(|setting| setting.trials);
+    let (least, most) = (trials.clone().min().unwrap_or(0), trials.max().unwrap_or(0));
+    let trials = if least == most {
+        count(most)
+    } else {
+        format!("{} to {}", count(least), count(most))
+    };
+    let how = if comparison.paired {
+        "paired by common random numbers"
+    } else {
+        "independent: their seeds differ"
+    };
+    let family = comparison.pairs.len();
+    format!(
+        "{} settings × {trials} trials, {how}; p adjusted by Holm over {family} test{}",
+        comparison.settings.len(),
+        if family == 1 { "" } else { "s" }
+    )
+}

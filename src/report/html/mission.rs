@@ -1,0 +1,215 @@
+//! Times until something is done, of which some were cut off: missions, and targets that get their links back.
+
+use plotly::Scatter;
+use plotly::common::{LineShape, Marker, MarkerSymbol, Mode};
+use plotly::layout::{Axis, AxisRange, HoverMode, RangeMode};
+
+use super::PageInput;
+use super::chart::{Points, axis, band, chart, line, percent_axis, shown};
+use super::figure::{Figure, Panel};
+use super::table::{Cell, DataTable};
+use crate::metrics::statistics::{Observation, Step, survival_curve};
+use crate::metrics::{HealingEpisode, Outcome};
+use crate::report::number;
+
+const COLOUR: &str = "#0072b2";
+
+/// When missions were complete.
+pub fn completion(input: &PageInput) -> Option<Figure> {
+    let observed = input.records.iter().filter_map(|record| match record.outcome {
+        Outcome::Completed { step } => Some((step, true)),
+        Outcome::Censored => Some((record.steps, false)),
+        Outcome::NoMission => None,
+    });
+    let observations: Vec<Observation> = observed
+        .map(|(step, happened)| Observation {
+            time: step as f64,
+            happened,
+        })
+        .collect();
+    observations.first()?;
+    let summary = input.summary;
+    let median = number::estimate(&summary.steps_to_completion.median, number::figure);
+    let cut_off = observations.iter().filter(|observation| !observation.happened).count() as u64;
+    let caption = format!(
+        "The share of missions complete by each control step of {} s, after Kaplan and Meier: {} of {} trials completed; half are done after \
+         {median} control steps. {}{}",
+        input.scenario.control.period.get(),
+        number::count(summary.completed),
+        number::count(observations.len() as u64),
+        band_words(observations.len()),
+        match cut_off {
+            0 => String::new(),
+            1 => " The trial that the time limit cut off counts as not yet complete, marked by a tick.".to_owned(),
+            many => format!(
+                " The {} trials that the time limit cut off count as not yet complete, each marked by a tick.",
+                number::count(many)
+            ),
+        }
+    );
+    let axis = "control steps";
+    Some(curve(
+        "completion",
+        "Time to completion",
+        caption,
+        &observations,
+        axis,
+        "missions complete",
+    ))
+}
+
+/// When targets had their links again after a failure.
+pub fn healing(input: &PageInput) -> Option<Figure> {
+    let cases = input
+        .records
+        .iter()
+        .flat_map(|record| record.healing.iter().map(move |episode| (episode, record.simulated)));
+    let harmful = cases.filter(|(episode, _): &(&HealingEpisode, _)| episode.is_harmful());
+    let observations: Vec<Observation> = harmful
+        .map(|(episode, end)| Observation {
+            time: episode.healed_at.unwrap_or(end).since(episode.failed_at).as_secs(),
+            happened: episode.healed_at.is_some(),
+        })
+        .collect();
+    observations.first()?;
+    let total = &input.summary.healing.as_ref()?.total;
+    let cut_off = if total.healed < total.failures {
+        " Failures whose trial ended first are cut off, each marked by a tick."
+    } else {
+        ""
+    };
+    let caption = format!(
+        "The share of failures mended by each time since the failure, of those that cost a target a link or its worker, after Kaplan and Meier: \
+         {} of {} were mended, half within {}. {} It takes failures as independent, also those of one trial.{cut_off}",
+        number::count(total.healed),
+        number::count(total.failures),
+        number::estimate(&total.time.median, number::seconds),
+        band_words(observations.len())
+    );
+    Some(curve(
+        "healing",
+        "Time to heal",
+        caption,
+        &observations,
+        "time since the failure, s",
+        "failures mended",
+    ))
+}
+
+fn band_words(observations: usize) -> &'static str {
+    if observations > 1 {
+        "The band is Greenwood's of 95 %, on the log(−log) scale."
+    } else {
+        "One observation has no band."
+    }
+}
+
+fn curve(
+    id: &'static str,
+    title: &'static str,
+    caption: String,
+    observations: &[Observation],
+    unit: &str,
+    what: &str,
+) -> Figure {
+    let steps = survival_curve(observations);
+    let end = observations
+        .iter()
+        .map(|observation| observation.time)
+        .fold(0.0, f64::max);
+    let mut table = DataTable::new(&[
+        unit,
+        "under way just before",
+        &format!("{what}, %"),
+        "low, %",
+        "high, %",
+    ]);
+    let at_risk = |time: f64| {
+        observations
+            .iter()
+            .filter(|observation| observation.time >= time)
+            .count() as u64
+    };
+    for step in &steps {
+        let [low, high] = step.band;
+        let mut row: Vec<Cell> = vec![step.time.into(), at_risk(step.time).into()];
+        row.extend([done(step.survival), done(high), done(low)].map(Cell::from));
+        table.rows.push(row);
+    }
+    let points = |share: fn(&Step) -> f64| {
+        let jumps = steps.iter().map(|step| [step.time, done(share(step))]);
+        let mut points: Points = std::iter::once([0.0, 0.0]).chain(jumps).collect();
+        // The curve goes on to the end of the longest trial.
+        points.extend(points.last().map(|last| [end, last[1]]));
+        points
+    };
+    let mut plot = chart(
+        from_where_it_begins(axis(unit), &steps, end),
+        percent_axis(what),
+        HoverMode::Closest,
+    );
+    if observations.len() > 1 {
+        for edge in band(
+            what,
+            COLOUR,
+            &points(|step| step.band[1]),
+            &points(|step| step.band[0]),
+            &LineShape::Hv,
+        ) {
+            plot.add_trace(edge);
+        }
+    }
+    let middle = points(|step| step.survival);
+    plot.add_trace(
+        line(
+            what,
+            COLOUR,
+            &middle,
+            LineShape::Hv,
+            "%{y:.1f} % by %{x:.5g}<extra></extra>",
+        )
+        .show_legend(false),
+    );
+    let cut_off = observations.iter().filter(|observation| !observation.happened);
+    let at = |time: f64| {
+        middle
+            .iter()
+            .rev()
+            .find(|point| point[0] <= time)
+            .map_or(0.0, |point| point[1])
+    };
+    let ticks: Vec<f64> = cut_off.map(|observation| shown(observation.time)).collect();
+    if !ticks.is_empty() {
+        let heights: Vec<f64> = ticks.iter().map(|&time| at(time)).collect();
+        let marks = Scatter::new(ticks, heights)
+            .name("cut off")
+            .mode(Mode::Markers)
+            .marker(Marker::new().symbol(MarkerSymbol::LineNSOpen).size(10).color("#b2182b"))
+            .hover_template("cut off at %{x:.5g}<extra></extra>");
+        plot.add_trace(marks);
+    }
+    Figure {
+        id,
+        title,
+        caption,
+        panels: vec![Panel::new("", plot)],
+        table,
+    }
+}
+
+/// The axis of times; where all that happened came late, it begins shortly before that.
+fn from_where_it_begins(axis: Axis, steps: &[Step], end: f64) -> Axis {
+    match steps.first() {
+        Some(first) if first.time > 0.6 * end => {
+            let margin = (end - first.time).max(0.02 * end);
+            axis.range_mode(RangeMode::Normal)
+                .range(AxisRange::new((first.time - margin).max(0.0), end + 0.02 * margin))
+        }
+        _ => axis,
+    }
+}
+
+/// The share done, in percent, of the share that is not.
+fn done(survival: f64) -> f64 {
+    (1.0 - survival) * 100.0
+}

@@ -1,0 +1,175 @@
+//! The page around the figures.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use plotly::Plot;
+
+use super::figure::Figure;
+use super::{PageInput, bandwidth, connectivity, detection, map, mission, overview, radio, robots, series};
+use crate::report::number::{count, seconds};
+use crate::scenario::to_ron;
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// Nothing may be fetched: what a page needs is in it.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:";
+
+/// By what a page of desim is known, near its beginning.
+pub const PAGE_MARK: &str = "<meta name=\"generator\" content=\"desim\">";
+
+/// A part of the page.
+struct Section {
+    id: &'static str,
+    title: &'static str,
+    figures: Vec<Figure>,
+}
+
+/// The page, whole.
+#[must_use]
+pub fn page(input: &PageInput) -> String {
+    let sections = sections(input);
+    let title = format!("{}: bandwidth and detection report", input.scenario.name);
+    let body = html! {
+        header {
+            p class="kind" { "Bandwidth and detection report" }
+            h1 { (input.scenario.name) }
+            @if let Some(question) = input.question { p class="question" { (question) } }
+            p class="ran" { (ran(input)) }
+            nav { @for section in &sections { a href={ "#" (section.id) } { (section.title) } } }
+        }
+        main {
+            section id="found" {
+                h2 { "What was found" }
+                div class="scroll whole" {
+                    table class="overview" {
+                        tbody { @for (name, value) in overview::rows(input) { tr { th scope="row" { (name) } td { (value) } } } }
+                    }
+                }
+                p class="note" { "Figures in brackets are 95 % intervals over trials." }
+            }
+            (numbered(input, &sections))
+            (scenario(input))
+        }
+        footer {
+            "Digest " code { (input.summary.digest) } ". " (input.made_by) ". This page needs no network: charts, data and script are in it."
+        }
+    };
+    document(&title, &body)
+}
+
+/// The document around a page's body: style, the script of the charts, our own.
+fn document(title: &str, body: &Markup) -> String {
+    let document = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                (PreEscaped(PAGE_MARK))
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                title { (title) }
+                link rel="icon" href="data:,";
+                style { (PreEscaped(STYLE)) }
+                (PreEscaped(chart_script()))
+            }
+            body {
+                (body)
+                script { (PreEscaped(SCRIPT)) }
+            }
+        }
+    };
+    document.into_string()
+}
+
+/// The script that draws, without the one for formulas that the crate adds after it: no label here has a formula, and it
+/// is 2 MB.
+fn chart_script() -> String {
+    let all = Plot::offline_js_sources();
+    let end = "</script>";
+    all.find(end).map(|at| all[..at + end.len()].to_owned()).unwrap_or(all)
+}
+
+fn sections(input: &PageInput) -> Vec<Section> {
+    let all: [(&str, &str, Vec<Option<Figure>>); 6] = [
+        ("mission", "Mission", vec![mission::completion(input)]),
+        (
+            "bandwidth",
+            "Bandwidth",
+            vec![
+                Some(bandwidth::by_topic(input)),
+                bandwidth::by_role(input),
+                Some(robots::distribution(input)),
+                robots::by_number(input),
+                Some(robots::lorenz(input)),
+                series::by_topic(input),
+                series::over_robots(input),
+                Some(bandwidth::headers(input)),
+            ],
+        ),
+        ("radio", "Radio", vec![Some(radio::lost(input)), radio::latency(input)]),
+        (
+            "graph",
+            "Connectivity",
+            vec![connectivity::graph(input), connectivity::roles(input)],
+        ),
+        (
+            "failures",
+            "Failures and their detection",
+            vec![
+                detection::suspicions(input),
+                detection::times(input),
+                mission::healing(input),
+            ],
+        ),
+        ("place", "Map", vec![map::traffic(input)]),
+    ];
+    let sections = all.into_iter().map(|(id, title, figures)| Section {
+        id,
+        title,
+        figures: figures.into_iter().flatten().collect(),
+    });
+    sections.filter(|section| !section.figures.is_empty()).collect()
+}
+
+fn numbered(input: &PageInput, sections: &[Section]) -> Markup {
+    let mut number = 0;
+    html! {
+        @for section in sections {
+            section id=(section.id) {
+                h2 { (section.title) }
+                @for figure in &section.figures {
+                    ({ number += 1; figure.markup(number, &input.scenario.name) })
+                }
+            }
+        }
+    }
+}
+
+/// What was run.
+fn ran(input: &PageInput) -> String {
+    let mut seeds: Vec<u64> = input.records.iter().map(|record| record.seed).collect();
+    seeds.dedup();
+    let seeds: Vec<String> = seeds.iter().map(u64::to_string).collect();
+    let trials = input.records.len() as u64;
+    format!(
+        "{} trial{} with seed{} {}, {} robots, {} simulated, {} control steps of {} s.",
+        count(trials),
+        if trials == 1 { "" } else { "s" },
+        if seeds.len() == 1 { "" } else { "s" },
+        seeds.join(", "),
+        count(input.scenario.swarm.robots.into()),
+        seconds(input.summary.simulated_s.value),
+        count(input.summary.steps.value),
+        input.scenario.control.period.get()
+    )
+}
+
+fn scenario(input: &PageInput) -> Markup {
+    html! {
+        section id="scenario" {
+            h2 { "The scenario" }
+            p { "Everything that the trials were given, defaults and overrides worked in." }
+            details class="long" { summary { "The scenario in full" } div class="scroll" tabindex="0" { pre { (to_ron(input.scenario)) } } }
+        }
+    }
+}

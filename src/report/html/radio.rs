@@ -1,0 +1,153 @@
+//! What the air does to frames: losses by cause, latency as felt.
+
+use plotly::Bar;
+use plotly::Scatter;
+use plotly::common::{Font, HoverInfo, LineShape, Marker, Mode, Orientation, Position};
+use plotly::layout::{AxisRange, AxisType, HoverMode};
+
+use super::PageInput;
+use super::chart::{ALL, DIRECTIONS, axis, categories, cause_colour, chart, line, percent_axis, shown, stacked, words};
+use super::figure::{Figure, Panel};
+use super::table::{Cell, DataTable};
+use crate::metrics::LatencyHistogram;
+use crate::report::number;
+
+/// Copies lost, by topic and cause.
+pub fn lost(input: &PageInput) -> Figure {
+    let frames = &input.summary.frames;
+    let causes: Vec<&str> = frames.total.lost.0.iter().map(|(cause, _)| cause.as_str()).collect();
+    let mut head: Vec<String> = ["topic", "offered", "delivered", "in flight"].map(str::to_owned).into();
+    head.extend(causes.iter().map(|cause| format!("lost: {}", cause.replace('_', " "))));
+    let mut table = DataTable { head, rows: Vec::new() };
+    let topics = frames.by_topic.0.iter().map(|(name, fates)| (name.as_str(), fates));
+    let rows: Vec<_> = topics.chain([("all topics", &frames.total)]).collect();
+    for (name, fates) in &rows {
+        let mut row: Vec<Cell> = vec![
+            (*name).into(),
+            fates.offered.into(),
+            fates.delivered.into(),
+            fates.in_flight.into(),
+        ];
+        row.extend(fates.lost.0.iter().map(|(_, frames)| Cell::from(*frames)));
+        table.rows.push(row);
+    }
+    let mut plot = stacked(axis("share of copies offered").tick_suffix(" %"), categories(""));
+    let names: Vec<String> = rows.iter().rev().map(|(name, _)| words(name)).collect();
+    // A cause that took nothing has no place in the legend; but a chart must have something to show.
+    let took = |cause: usize| frames.total.lost.0.get(cause).is_some_and(|(_, lost)| *lost > 0);
+    let any = (0..causes.len()).any(took);
+    for (cause, name) in causes.iter().enumerate().filter(|(cause, _)| took(*cause) || !any) {
+        let share = |(_, fates): &(&str, &crate::metrics::summary::Fates)| {
+            let lost = fates.lost.0.get(cause).map_or(0, |(_, frames)| *frames);
+            shown(100.0 * lost as f64 / fates.offered.max(1) as f64)
+        };
+        let bars = Bar::new(rows.iter().rev().map(share).collect(), names.clone())
+            .name(words(name))
+            .orientation(Orientation::Horizontal)
+            .marker(Marker::new().color(cause_colour(cause)))
+            .hover_template("%{y}: %{x:.4g} %");
+        plot.add_trace(bars);
+    }
+    let total: u64 = frames.total.lost.0.iter().map(|(_, frames)| frames).sum();
+    Figure {
+        id: "lost",
+        title: "Lost frames by cause",
+        caption: format!(
+            "Of the copies of frames that were offered to robots in range {}, the share that was lost, by cause. A frame that five robots could hear \
+             is five copies, each with a fate of its own. In all, {} of {} copies were lost.",
+            input.in_trials(),
+            number::count(total),
+            number::count(frames.total.offered)
+        ),
+        panels: vec![Panel::of_rows("", plot, rows.len())],
+        table,
+    }
+}
+
+/// Times that frames took, as receivers felt them.
+pub fn latency(input: &PageInput) -> Option<Figure> {
+    let mut all = LatencyHistogram::default();
+    input.records.iter().for_each(|record| all.merge(&record.latency));
+    let (least, most) = (all.min()?, all.max()?);
+    let mut curve = vec![[least.as_secs() * 1e3, 0.0]];
+    let mut below = 0;
+    for (_, high, count) in all.buckets() {
+        below += count;
+        let high = high.min(most.as_nanos());
+        curve.push([high as f64 / 1e6, 100.0 * below as f64 / all.count() as f64]);
+    }
+    let mut table = DataTable::new(&["latency, ms", "copies that took no longer, %"]);
+    table.rows = curve
+        .iter()
+        .map(|[time, share]| vec![(*time).into(), (*share).into()])
+        .collect();
+    let wide = least.as_nanos() > 0 && most.as_nanos() / least.as_nanos().max(1) >= 20;
+    let x = axis("latency, ms");
+    let x = if wide {
+        x.type_(AxisType::Log)
+    } else {
+        x.range(AxisRange::new(0.0, shown(most.as_secs() * 1.15e3)))
+    };
+    let mut plot = chart(x, percent_axis("copies that took no longer"), HoverMode::Closest);
+    let hover = "%{y:.2f} % within %{x:.4g} ms<extra></extra>";
+    plot.add_trace(line("copies", ALL, &curve, LineShape::Hv, hover).show_legend(false));
+    plot.add_trace(quantiles(&all));
+    Some(Figure {
+        id: "latency",
+        title: "Latency as felt",
+        caption: format!(
+            "Which share of the {} copies that arrived {} took no longer than so many milliseconds, from the start of its transmission to its arrival; dots are the median and the 95th and \
+             99th percentile. Times are those of buckets at most 1/128 of their lower end wide.{}",
+            number::count(all.count()),
+            input.in_trials(),
+            if wide { " Mind the logarithmic axis." } else { "" }
+        ),
+        panels: vec![Panel::new("", plot)],
+        table,
+    })
+}
+
+/// A mark on the curve.
+struct Mark {
+    /// Where, milliseconds and percent.
+    at: [f64; 2],
+    /// Which quantiles it is.
+    names: String,
+    /// Their latency, in words.
+    time: String,
+}
+
+/// Marks at the median and at the 95th and 99th percentile, those that read the same in one.
+fn quantiles(all: &LatencyHistogram) -> Box<Scatter<f64, f64>> {
+    let mut marks: Vec<Mark> = Vec::new();
+    for (q, name) in [(0.5, "median"), (0.95, "95 %"), (0.99, "99 %")] {
+        let Some(latency) = all.quantile(q) else { continue };
+        let time = number::seconds(latency.as_secs());
+        match marks.iter_mut().find(|mark| mark.time == time) {
+            Some(mark) => mark.names = format!("{}, {name}", mark.names),
+            None => marks.push(Mark {
+                at: [shown(latency.as_secs() * 1e3), q * 100.0],
+                names: name.to_owned(),
+                time,
+            }),
+        }
+    }
+    let label = |mark: &Mark| format!("  {}: {}  ", mark.names, mark.time);
+    // What is near the top has no room above, and may have none on the left.
+    let side = |mark: &Mark| {
+        if mark.at[1] > 98.0 {
+            Position::BottomRight
+        } else {
+            Position::MiddleLeft
+        }
+    };
+    let places = |part: usize| marks.iter().map(|mark| mark.at[part]).collect::<Vec<_>>();
+    Scatter::new(places(0), places(1))
+        .mode(Mode::MarkersText)
+        .marker(Marker::new().color(DIRECTIONS[1]).size(7))
+        .text_array(marks.iter().map(label).collect::<Vec<_>>())
+        .text_position_array(marks.iter().map(side).collect())
+        .text_font(Font::new().size(11))
+        .hover_info(HoverInfo::Skip)
+        .show_legend(false)
+}

@@ -1,0 +1,67 @@
+//! The figures that a study compares: those that all of its settings have.
+
+use super::Plan;
+use crate::metrics::figures::Registry;
+use crate::scenario::ProtocolConfig;
+use crate::scenario::checks::Problem;
+use crate::scenario::explain::nearest;
+
+/// Keys of the figures that every setting has.
+pub fn common(plan: &Plan) -> Vec<String> {
+    let of = |protocol: &ProtocolConfig| -> Vec<String> {
+        let registry = Registry::of(protocol.topics());
+        registry.figures().map(|figure| figure.key.clone()).collect()
+    };
+    let mut known: Option<Vec<String>> = None;
+    for setting in &plan.settings {
+        let has = of(&setting.scenario.protocol);
+        known = Some(match known {
+            None => has,
+            Some(known) => known.into_iter().filter(|key| has.contains(key)).collect(),
+        });
+    }
+    known.unwrap_or_default()
+}
+
+/// What two scenarios are compared by where nobody says: what the mission takes, what it costs, what arrives, who is mistaken.
+pub fn usual(plan: &Plan) -> Vec<String> {
+    let has_mission = |setting: &super::Setting| matches!(setting.scenario.protocol, ProtocolConfig::Backbone(_));
+    let mission = plan.settings.iter().all(has_mission);
+    let keys = [
+        "steps_to_completion",
+        "bandwidth.tx_bytes_per_step.mean",
+        "bandwidth.rx_bytes_per_step.mean",
+        "delivery_ratio",
+        "detection.mistake_rate_hz",
+    ];
+    keys.into_iter()
+        .skip(usize::from(!mission))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Says that a figure is not known, and which may be meant.
+pub fn unknown(key: &str, known: &[String]) -> String {
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let guess = nearest(key, &known).map_or_else(String::new, |name| format!(", did you mean `{name}`?"));
+    format!("no figure `{key}` is common to all settings{guess}")
+}
+
+/// Names the figures, those of single topics left out.
+pub fn help(known: &[String]) -> String {
+    let whole = known.iter().filter(|key| !key.contains("by_topic"));
+    let keys: Vec<&str> = whole.map(String::as_str).collect();
+    format!("figures are {}, and bandwidth.by_topic.<topic>.*", keys.join(", "))
+}
+
+/// Figures that a study names and not all of its settings have; `also` says how many further ones it names.
+pub fn problems(plan: &Plan, also: usize) -> Vec<Problem> {
+    let known = common(plan);
+    let places = std::iter::once("figure".to_owned()).chain((0..also).map(|index| format!("also[{index}]")));
+    let named = places.zip(plan.figures.iter());
+    let drawn = plan.pareto.iter().flat_map(|axes| (0..).zip(axes));
+    let drawn = drawn.map(|(axis, key): (usize, &String)| (format!("pareto[{axis}]"), key));
+    let all = named.chain(drawn).filter(|(_, key)| !known.contains(key));
+    all.map(|(place, key)| Problem::new(&place, unknown(key, &known), help(&known)))
+        .collect()
+}

@@ -1,0 +1,146 @@
+//! What people read of a comparison.
+
+use std::path::Path;
+
+use desim::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials};
+use desim::metrics::figures::{Better, Figure, Sample};
+use desim::report::{ComparisonInput, comparison, describe};
+
+fn figure(key: &str, name: &str, unit: &'static str, better: Better, is_ratio: bool) -> Figure {
+    Figure {
+        key: key.into(),
+        name: name.into(),
+        unit: unit.into(),
+        better,
+        is_ratio,
+    }
+}
+
+/// Twelve trials of three settings: the second sends half and takes as long, the third is slow and at times not done.
+fn made_up(reference: Option<usize>, stopping: Option<Stopping>) -> Comparison {
+    let steps = |shift: f64, limit: f64| {
+        let sample = move |trial: u32| {
+            let steps = 1250.0 + f64::from(trial * 37 % 91) + shift * f64::from(1 + trial % 4);
+            Sample {
+                part: [steps.min(limit), 1.0],
+                is_censored: steps > limit,
+            }
+        };
+        (0..12).map(sample).collect::<Vec<_>>()
+    };
+    let bytes = |mean: f64| {
+        let sample = move |trial: u32| Sample {
+            part: [mean + f64::from(trial % 5) / 50.0, 1.0],
+            is_censored: false,
+        };
+        (0..12).map(sample).collect::<Vec<_>>()
+    };
+    let mistakes = |rate: f64| {
+        let sample = move |trial: u32| Sample {
+            part: [(rate * f64::from(3 + trial % 3)).round(), 5000.0],
+            is_censored: false,
+        };
+        (0..12).map(sample).collect::<Vec<_>>()
+    };
+    let setting = |label: &str, samples: Vec<Vec<Sample>>| Trials {
+        name: label.replace([' ', '.'], "-"),
+        label: label.into(),
+        levels: vec![label.into()],
+        seed: 1,
+        samples,
+    };
+    let figures = vec![
+        figure(
+            "steps_to_completion",
+            "steps to completion",
+            "control steps",
+            Better::Lower,
+            false,
+        ),
+        figure(
+            "bandwidth.tx_bytes_per_step.median",
+            "bytes sent, median robot",
+            "B/step",
+            Better::Lower,
+            false,
+        ),
+        figure(
+            "detection.mistake_rate_hz",
+            "mistake rate λ_M",
+            "Hz",
+            Better::Lower,
+            true,
+        ),
+    ];
+    let design = Design {
+        study: "made-up".into(),
+        question: Some("How rarely may robots repeat their status before the mission suffers from it?".into()),
+        factors: vec![Factor {
+            name: "status interval".into(),
+            levels: ["0.1 s", "0.5 s", "2 s"].map(str::to_owned).to_vec(),
+        }],
+        compared: if reference.is_some() { vec![1, 0, 2] } else { vec![0, 1] },
+        figures,
+        reference,
+        relevant: 0.05,
+        pareto: Some([0, 1]),
+    };
+    let settings = [
+        setting("0.1 s", vec![steps(0.0, 1600.0), bytes(18.0), mistakes(0.1)]),
+        setting("0.5 s", vec![steps(-2.0, 1600.0), bytes(9.0), mistakes(0.1)]),
+        setting("2 s", vec![steps(90.0, 1600.0), bytes(7.0), mistakes(9.0)]),
+    ];
+    let mut compared = Comparison::of(&design, &settings, stopping);
+    describe(&mut compared);
+    compared
+}
+
+fn shown(compared: &Comparison) -> String {
+    comparison(&ComparisonInput {
+        comparison: compared,
+        folder: Path::new("results/made-up"),
+        files: &["comparison.json", "comparison.parquet", "study.json"],
+        colour: false,
+    })
+}
+
+#[test]
+fn the_report_of_a_study_with_a_reference() {
+    insta::assert_snapshot!(shown(&made_up(Some(0), None)));
+}
+
+#[test]
+fn the_report_of_a_study_without_a_reference_that_added_trials() {
+    let stopping = Stopping {
+        figure: "steps_to_completion".into(),
+        width: 20.0,
+        widest: Some(31.4),
+        trials: 12,
+        cap: 12,
+        reached: false,
+    };
+    insta::assert_snapshot!(shown(&made_up(None, Some(stopping))));
+}
+
+#[test]
+fn every_difference_is_said_in_words() {
+    let compared = made_up(Some(0), None);
+    let words: Vec<&str> = compared.pairs.iter().map(|pair| pair.words.as_str()).collect();
+    insta::assert_snapshot!(words.join("\n"));
+}
+
+#[test]
+fn no_line_is_wider_than_80_columns() {
+    for reference in [Some(0), None] {
+        let report = shown(&made_up(reference, None));
+        assert!(report.lines().all(|line| line.chars().count() <= 80), "{report}");
+    }
+}
+
+#[test]
+fn a_comparison_reads_back_from_its_json() {
+    let compared = made_up(Some(0), None);
+    let json = serde_json::to_string(&compared).unwrap();
+    let again: Comparison = serde_json::from_str(&json).unwrap();
+    assert_eq!(again, compared);
+}
