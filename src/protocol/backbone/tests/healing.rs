@@ -351,8 +351,8 @@ fn of_the_relays_beside_a_lost_worker_the_one_nearest_to_the_target_takes_over_a
 fn a_robot_that_hears_nobody_is_free_where_it_stops_though_that_is_not_within_reach_of_the_root() {
     let mut worker = worker_with_parent();
     worker.run(SILENT_S, &[]);
-    // Its only target lies ahead, so its waiting place is behind the root, 1.7 m away.
-    worker.x = -1.85;
+    // Its only target lies ahead, so its waiting place is behind the root, 1.7 m away, and aside by its share of the spread.
+    (worker.x, worker.y) = (-1.77, 0.54);
     let output = worker.step(&[]);
     assert_eq!((worker.role(), output.velocity), (Role::Free, Some(Vec2::zeros())));
 }

@@ -39,6 +39,7 @@ fn robots_with(targets: u8, gossip: &GossipConfig) -> Vec<Backbone> {
 struct Bench {
     robot: Backbone,
     x: f64,
+    y: f64,
     sequence: u32,
 }
 
@@ -51,6 +52,7 @@ impl Bench {
         Self {
             robot: robots_with(1, gossip).remove(robot as usize),
             x,
+            y: 0.0,
             sequence: 0,
         }
     }
@@ -68,13 +70,13 @@ impl Bench {
                 size: MessageSize::alone(4),
                 message: message.clone(),
             },
-            displacement: [(x - self.x) as f32, 0.0],
+            displacement: [(x - self.x) as f32, -self.y as f32],
         });
         let mut input = Input {
             wake: Wake::ControlStep,
             inbox: inbox.collect(),
             pose: Pose {
-                position: Vec2::new(self.x, 0.0),
+                position: Vec2::new(self.x, self.y),
                 heading: 0.0,
             },
             proximity: Vec::new(),
