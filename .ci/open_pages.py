@@ -78,8 +78,8 @@ def open_page(context: BrowserContext, path: pathlib.Path, pictures: pathlib.Pat
     name = f"{path.parent.name}-{device}"
     page.screenshot(path=pictures / f"{name}.png", full_page=True)
     if device == "desktop":
-        found += hover(page)
         page.pdf(path=pictures / f"{name}.pdf", prefer_css_page_size=True)
+        found += hover(page)
     page.close()
     return [f"{name}: {fault}" for fault in found]
 

@@ -42,6 +42,24 @@ def mean(values):
     return estimate(value, value - half, value + half, n)
 
 
+def share(values):
+    """The mean of shares, with Wilson's interval at the effective number of trials."""
+    shares = [value for value in values if value is not None]
+    n, found = len(shares), mean(shares)
+    value = found["value"]
+    if n < 2:
+        return found
+    if value in (0.0, 1.0):
+        return wilson(n * int(value), n)
+    squared_error = total((share - value) ** 2 for share in shares) / (n - 1) / n
+    if squared_error == 0:
+        return estimate(value, value, value, n)
+    z, effective = student.ppf(0.975, n - 1), value * (1 - value) / squared_error
+    centre = (value + z * z / (2 * effective)) / (1 + z * z / effective)
+    half = z / (1 + z * z / effective) * math.sqrt(value * (1 - value) / effective + (z / effective) ** 2 / 4)
+    return estimate(value, centre - half, centre + half, n)
+
+
 def quantile(ordered, q):
     if not ordered:
         return None
@@ -111,6 +129,7 @@ class Folder:
         self.faults = self.table("faults")
         self.healing = self.table("healing")
         self.detection = self.table("detection")
+        self.rumors = self.table("spread")
         self.topics = self.frames["topic"].unique(maintain_order=True).to_list()
         prefix = "robots_"
         self.roles = [c.removeprefix(prefix) for c in self.connectivity.columns if c.startswith(prefix)]
@@ -232,6 +251,43 @@ class Folder:
         whole = {**self.healed(harmful), "harmless": len(harmless), "by_role": by_role, "by_overlap": by_overlap}
         return {"healing": whole}
 
+    def spreading(self):
+        """How rumours spread over the robots that nothing ails at the end, if there were any."""
+        if self.rumors.is_empty():
+            return {}
+        trials = []
+        for trial, end in self.trials.select("trial", "simulated_s").iter_rows():
+            ailing = self.faults.filter(pl.col("trial") == trial, pl.col("until_s").is_null())["robot"].drop_nulls()
+            pairs = self.rumors.filter(pl.col("trial") == trial, ~pl.col("robot").is_in(ailing.to_list()))
+            trials.append((len(pairs), sorted(pairs["informed_s"].drop_nulls()), end))
+
+        def until(wanted):
+            times = [(known[n - 1], True) if n <= len(known) else (end, False) for n, known, end in wanted]
+            complete = all(done for _, done in times)
+            return {"median": kaplan_meier(times), "mean": mean([t for t, _ in times] if complete else [])}
+
+        spread = {
+            "informed_ratio": mean([len(known) / count for count, known, _ in trials]),
+            "time_to_half": until([((count + 1) // 2, known, end) for count, known, end in trials]),
+            "time_to_all": until(trials),
+        }
+        return {"spread": spread}
+
+    def heard_in_vain(self):
+        """Messages that told their receiver nothing new, in those delivered, if there were any."""
+        counted = self.bandwidth.filter(pl.col("direction").is_in(["rx", "duplicate"]))
+        if counted.filter(direction="duplicate").is_empty():
+            return {}
+
+        def share(rows):
+            grouped = rows.group_by("trial", "direction").agg(pl.sum("frames"))
+            sums = {(trial, direction): frames for trial, direction, frames in grouped.iter_rows()}
+            received = [(trial, sums.get((trial, "rx"), 0)) for trial in self.trials["trial"]]
+            return mean([sums.get((trial, "duplicate"), 0) / rx for trial, rx in received if rx > 0])
+
+        by_topic = {topic: share(counted.filter(topic=topic)) for topic in self.topics}
+        return {"duplicates": {**share(counted), "by_topic": by_topic}}
+
     def failure_detection(self):
         suspicions = self.detection.filter(event="suspicion")
         failures = self.detection.filter(event="failure")
@@ -299,10 +355,12 @@ class Folder:
             },
             "load_imbalance": {"tx": mean([gini(t) for t in sent]), "rx": mean([gini(t) for t in received])},
             "lambda2_min": {**median(least), "min": min((v for v in least if v is not None), default=None)},
-            "connected_share": mean(list(self.samples(lambda rows: (rows["components"] == 1).sum() / len(rows)))),
+            "connected_share": share(list(self.samples(lambda rows: (rows["components"] == 1).sum() / len(rows)))),
             "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]]),
             **self.failures(),
             **self.mending(),
+            **self.spreading(),
+            **self.heard_in_vain(),
             "detection": self.failure_detection(),
             "steps": {"value": self.trials["steps"].sum()},
             "simulated_s": {"value": total(self.trials["simulated_s"])},

@@ -19,7 +19,7 @@
 //! ```
 //! use std::rc::Rc;
 //!
-//! use desim::engine::Span;
+//! use desim::engine::{ActorId, Span};
 //! use desim::geometry::{Pose, Vec2};
 //! use desim::protocol::heartbeat::{Heartbeat, Settings};
 //! use desim::quantity::Probability;
@@ -31,8 +31,8 @@
 //!
 //! let places = [Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0)];
 //! let poses = places.map(|position| Pose { position, heading: 0.0 }).to_vec();
-//! let settings = Rc::new(Settings::new(&Default::default(), &Default::default(), Span::from_secs(0.1)));
-//! let robots = vec![Heartbeat::new(settings.clone()), Heartbeat::new(settings)];
+//! let settings = Rc::new(Settings::new(&Default::default(), &Default::default(), Span::from_secs(0.1), setup.streams()));
+//! let robots = vec![Heartbeat::new(ActorId(0), settings.clone()), Heartbeat::new(ActorId(1), settings)];
 //!
 //! let record = setup.run(poses, robots, DriverKind::Actors, &Default::default())?;
 //!
@@ -74,6 +74,7 @@ pub mod faults;
 pub mod geometry;
 pub mod metrics;
 pub mod motion;
+pub mod predict;
 pub mod protocol;
 pub mod quantity;
 pub mod radio;

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use desim::cli::check::{Say, check};
 use desim::protocol::backbone::TargetsConfig;
 use desim::radio::{LatencyConfig, LossConfig};
 use desim::scenario::{Override, ProtocolConfig, Report, Scenario, json_schema, load, parse, question, to_ron};
@@ -75,6 +76,7 @@ fn the_schema_states_ranges_and_refuses_what_lies_beyond() {
         ("/radio/range", 0.into()),
         ("/name", "a/b".into()),
         ("/protocol/Backbone/targets", "Ring".into()),
+        ("/protocol/Backbone/targets/Ring/links", 0.into()),
     ] {
         let mut json = well.clone();
         *json.pointer_mut(field).unwrap() = bad;
@@ -369,7 +371,8 @@ fn the_mistake_of_an_override_without_a_value() {
 fn checked(files: &[PathBuf], overrides: &[&str], resolved: bool) -> (bool, String) {
     let overrides: Vec<_> = overrides.iter().map(|text| (*text).to_owned()).collect();
     let mut out = Vec::new();
-    let well = desim::cli::check::check(files, &overrides, resolved, &mut out).unwrap();
+    let say = if resolved { Say::Resolved } else { Say::Well };
+    let well = check(files, &overrides, say, &mut out).unwrap();
     (well, String::from_utf8(out).unwrap())
 }
 

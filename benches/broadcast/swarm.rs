@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use desim::engine::{ActorId, Span};
+use desim::engine::{ActorId, Span, Streams};
 use desim::metrics::MetricsConfig;
 use desim::motion::MotionConfig;
 use desim::protocol::control::{ControlConfig, PhaseConfig};
@@ -28,6 +28,7 @@ pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
         &detector,
         period,
         workload.poses.len(),
+        Streams::new(SEED, 0),
     ));
     let robots = workload
         .poses

@@ -3,21 +3,36 @@
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use crate::export;
+use crate::predict::Preflight;
+use crate::report;
 use crate::scenario::{
     Diagnostic, Override, Plan, Report, Scenario, Style, contents, is_study, load_study, parse, question, to_ron,
 };
 
+/// What to say of a scenario that is well.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Say {
+    /// A line that it is.
+    Well,
+    /// The whole scenario, with its defaults.
+    Resolved,
+    /// What closed forms expect of it.
+    Expected,
+    /// The same of all files as one JSON document, a list, and nothing else; faults go to standard error.
+    ExpectedJson,
+}
+
 /// Checks each of `files` with `overrides` worked in, and writes to `out`, standard output: for every file its faults,
-/// or a line that it is well; where `resolved` is asked for, the whole scenario with its defaults instead of that line.
-/// Answers whether all are well.
+/// or what to `say` of one that is well. Answers whether all are well.
 ///
 /// # Errors
 /// If `out` cannot be written to.
-pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut dyn Write) -> io::Result<bool> {
+pub fn check(files: &[PathBuf], overrides: &[String], say: Say, out: &mut dyn Write) -> io::Result<bool> {
     let parsed = match all(overrides) {
         Ok(parsed) => parsed,
         Err(report) => {
-            write!(out, "{}", report.render(style(&io::stdout())))?;
+            write_faults(&report, say, out)?;
             return Ok(false);
         }
     };
@@ -28,23 +43,45 @@ pub fn check(files: &[PathBuf], overrides: &[String], resolved: bool, out: &mut 
             Ok(checked) => accepted.push((file, checked)),
             Err(report) => {
                 well = false;
-                write!(out, "{}", report.render(style(&io::stdout())))?;
+                write_faults(&report, say, out)?;
             }
         }
     }
-    for (file, checked) in accepted {
-        match checked {
-            Checked::Scenario(text, scenario) if resolved => write_resolved(question(&text), &scenario, out)?,
-            Checked::Scenario(_, scenario) => write_line(file, &scenario, out)?,
-            Checked::Study(plan) if resolved => {
-                for setting in &plan.settings {
-                    write_resolved(plan.question.clone(), &setting.scenario, out)?;
-                }
+    if say == Say::ExpectedJson {
+        if well {
+            let scenarios = accepted.iter().flat_map(|(_, checked)| checked.scenarios());
+            let expected: Vec<Preflight> = scenarios.map(Preflight::of).collect();
+            out.write_all(&export::json(&expected))?;
+        }
+        return Ok(well);
+    }
+    let colour = style(&io::stdout()).colour;
+    let mut apart = "";
+    for (file, checked) in &accepted {
+        let question = checked.question();
+        if say == Say::Well {
+            write_line(file, checked, out)?;
+            continue;
+        }
+        for scenario in checked.scenarios() {
+            if say == Say::Resolved {
+                write_resolved(question.as_deref(), scenario, out)?;
+            } else {
+                let text = report::preflight(&Preflight::of(scenario), question.as_deref(), colour);
+                write!(out, "{apart}{text}")?;
+                apart = "\n";
             }
-            Checked::Study(plan) => write_study(file, &plan, out)?,
         }
     }
     Ok(well)
+}
+
+fn write_faults(faults: &Report, say: Say, out: &mut dyn Write) -> io::Result<()> {
+    if say == Say::ExpectedJson {
+        let mut standard_error = io::stderr();
+        return write!(standard_error, "{}", faults.render(style(&standard_error)));
+    }
+    write!(out, "{}", faults.render(style(&io::stdout())))
 }
 
 /// Every override.
@@ -71,6 +108,24 @@ pub fn all(overrides: &[String]) -> Result<Vec<Override>, Report> {
 enum Checked {
     Scenario(String, Box<Scenario>),
     Study(Plan),
+}
+
+impl Checked {
+    /// The question that it asks.
+    fn question(&self) -> Option<String> {
+        match self {
+            Self::Scenario(text, _) => question(text),
+            Self::Study(plan) => plan.question.clone(),
+        }
+    }
+
+    /// Its scenario, or those of its settings.
+    fn scenarios(&self) -> Vec<&Scenario> {
+        match self {
+            Self::Scenario(_, scenario) => vec![scenario],
+            Self::Study(plan) => plan.settings.iter().map(|setting| &setting.scenario).collect(),
+        }
+    }
 }
 
 fn read(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
@@ -108,17 +163,20 @@ fn write_study(file: &Path, plan: &Plan, out: &mut dyn Write) -> io::Result<()> 
     )
 }
 
-fn write_resolved(question: Option<String>, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
+fn write_resolved(question: Option<&str>, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
     if let Some(question) = question {
         writeln!(out, "// {question}")?;
     }
     write!(out, "{}", to_ron(scenario))
 }
 
-fn write_line(file: &Path, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
+fn write_line(file: &Path, checked: &Checked, out: &mut dyn Write) -> io::Result<()> {
     let Scenario {
         name, trials, swarm, ..
-    } = scenario;
+    } = match checked {
+        Checked::Scenario(_, scenario) => &**scenario,
+        Checked::Study(plan) => return write_study(file, plan, out),
+    };
     let counted = |count: u32, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let (trials, robots) = (counted(*trials, "trial"), counted(swarm.robots, "robot"));
     writeln!(out, "ok {}: {name}, {trials}, {robots}", file.display())

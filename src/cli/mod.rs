@@ -19,11 +19,13 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use check::Say;
 use compare::CompareArguments;
 use explain::ExplainArguments;
 pub use failure::Failure;
 use report::ReportArguments;
 use scenario::ScenarioArguments;
+use shown::Format;
 
 /// What the user asks for.
 #[derive(Debug, Parser)]
@@ -75,6 +77,13 @@ pub enum Command {
         /// Print each scenario whole, those of a study's settings too, with every default and override in it
         #[arg(long)]
         resolved: bool,
+        /// Print what closed forms expect of each scenario: neighbours, loss, latency, bytes, mistakes of the detector, each with
+        /// its formula and with what it takes for granted
+        #[arg(long, conflicts_with = "resolved")]
+        predict: bool,
+        /// How to print what is expected: as tables, or as one JSON list with an entry a file
+        #[arg(long, value_enum, default_value_t, requires = "predict")]
+        format: Format,
     },
     /// Report finished results again: on the terminal, and as a page of charts
     #[command(long_about = report::LONG_ABOUT)]
@@ -103,8 +112,16 @@ pub fn run(command: Command) -> Result<(), Failure> {
             files,
             overrides,
             resolved,
+            predict,
+            format,
         } => {
-            let well = check::check(&files, &overrides, resolved, &mut out)?;
+            let say = match (resolved, predict, format) {
+                (true, ..) => Say::Resolved,
+                (_, true, Format::Text) => Say::Expected,
+                (_, true, Format::Json) => Say::ExpectedJson,
+                (false, false, _) => Say::Well,
+            };
+            let well = check::check(&files, &overrides, say, &mut out)?;
             if well { Ok(()) } else { Err(Failure::Shown) }
         }
         Command::Report(arguments) => report::run(&arguments),

@@ -51,7 +51,7 @@ pub fn run(arguments: &ReportArguments) -> Result<(), Failure> {
     let trials: Vec<_> = manifests().flat_map(|manifest| manifest.trials.clone()).collect();
     let finished = Finished {
         question: question(&results),
-        control_period_s: results.scenario.control.period.get(),
+        scenario: &results.scenario,
         folders: folders.join(", ").into(),
         summary: &results.summary,
         trials: &trials,

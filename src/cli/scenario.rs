@@ -126,7 +126,7 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
     };
     let finished = Finished {
         question: question(&text),
-        control_period_s: scenario.control.period.get(),
+        scenario: &scenario,
         folders: folder.path().to_owned(),
         summary: &summary,
         trials: &manifest.trials,

@@ -8,7 +8,9 @@ use clap::ValueEnum;
 use super::failure::Failure;
 use crate::export::{self, TrialEntry};
 use crate::metrics::Summary;
+use crate::predict;
 use crate::report::{self, Speed};
+use crate::scenario::Scenario;
 
 /// What is printed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -25,8 +27,8 @@ pub enum Format {
 pub struct Finished<'a> {
     /// The question that they answer.
     pub question: Option<String>,
-    /// Length of a control step, seconds.
-    pub control_period_s: f64,
+    /// The scenario that they are of.
+    pub scenario: &'a Scenario,
     /// Where they are.
     pub folders: PathBuf,
     /// Their figures.
@@ -56,7 +58,8 @@ impl Finished<'_> {
         report::terminal(&report::Input {
             question: self.question.as_deref(),
             summary: self.summary,
-            control_period_s: self.control_period_s,
+            control_period_s: self.scenario.control.period.get(),
+            surprises: &predict::surprises(self.scenario, self.summary),
             speed: Speed {
                 simulated_s: trials.iter().map(|trial| trial.simulated_s).sum(),
                 delivered: trials.iter().map(|trial| trial.delivered).sum(),

@@ -110,6 +110,7 @@ fn names(scenario: &Scenario) -> Names {
     match &scenario.protocol {
         ProtocolConfig::Backbone(_) => Names::of::<crate::protocol::backbone::Backbone>(&scenario.detector),
         ProtocolConfig::Heartbeat => Names::of::<crate::protocol::heartbeat::Heartbeat>(&scenario.detector),
+        ProtocolConfig::Rumor(_) => Names::of::<crate::protocol::rumor::Rumor>(&scenario.detector),
     }
 }
 
@@ -121,7 +122,7 @@ fn scene(scenario: &Scenario) -> Scene {
         range: scenario.radio.range.get(),
         targets: match &scenario.protocol {
             ProtocolConfig::Backbone(config) => config.targets().into_iter().map(|(place, _)| place).collect(),
-            ProtocolConfig::Heartbeat => Vec::new(),
+            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => Vec::new(),
         },
         roles: names(scenario).roles,
     }

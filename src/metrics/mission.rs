@@ -158,27 +158,49 @@ impl Mission {
 #[derive(Debug)]
 pub(super) struct Judge {
     pub(super) mission: Mission,
-    hold: Span,
+    hold: Hold,
+}
+
+impl Judge {
+    /// A judge that asks for `mission` to be held as `hold` says.
+    pub(super) fn new(mission: Mission, hold: Hold) -> Self {
+        Self { mission, hold }
+    }
+
+    /// Judges control step number `step`; steps are judged in order. A mission that is complete stays so.
+    pub(super) fn observe(&mut self, step: u64, scene: Scene) -> Progress {
+        self.hold.observe(step, || self.mission.is_accomplished(scene))
+    }
+
+    /// The step that completed the mission, if one did.
+    pub(super) fn completed_at(&self) -> Option<u64> {
+        self.hold.completed_at()
+    }
+}
+
+/// Asks for something to hold without a break for some time.
+#[derive(Clone, Debug)]
+pub(super) struct Hold {
+    duration: Span,
     control_period: Span,
     progress: Progress,
 }
 
-impl Judge {
-    /// A judge that asks for `mission` to be held for `hold`.
-    pub(super) fn new(mission: Mission, hold: Span, control_period: Span) -> Self {
+impl Hold {
+    /// Something is to be held for `duration`, judged every `control_period`.
+    pub(super) fn new(duration: Span, control_period: Span) -> Self {
         Self {
-            mission,
-            hold,
+            duration,
             control_period,
             progress: Progress::Underway,
         }
     }
 
-    /// Judges control step number `step`; steps are judged in order. A mission that is complete stays so.
-    pub(super) fn observe(&mut self, step: u64, scene: Scene) -> Progress {
+    /// Judges control step number `step`; steps are judged in order. What is complete stays so.
+    pub(super) fn observe(&mut self, step: u64, holds: impl FnOnce() -> bool) -> Progress {
         self.progress = match self.progress {
             complete @ Progress::Complete { .. } => complete,
-            _ if !self.mission.is_accomplished(scene) => Progress::Underway,
+            _ if !holds() => Progress::Underway,
             Progress::Underway => self.held_since(step, step),
             Progress::Holding { since } => self.held_since(since, step),
         };
@@ -186,14 +208,14 @@ impl Judge {
     }
 
     fn held_since(&self, since: u64, step: u64) -> Progress {
-        if self.control_period * (step - since) >= self.hold {
+        if self.control_period * (step - since) >= self.duration {
             Progress::Complete { since }
         } else {
             Progress::Holding { since }
         }
     }
 
-    /// The step that completed the mission, if one did.
+    /// The step that completed it, if one did.
     pub(super) fn completed_at(&self) -> Option<u64> {
         match self.progress {
             Progress::Complete { since } => Some(since),
@@ -332,7 +354,7 @@ mod tests {
 
     #[test]
     fn the_first_step_of_an_unbroken_hold_is_the_completion() {
-        let mut judge = Judge::new(mission(2), STEP * 3, STEP);
+        let mut judge = Judge::new(mission(2), Hold::new(STEP * 3, STEP));
         let (held, mut broken) = (Stage::new(), Stage::new());
         broken.positions[3].x = 0.0;
         let scenes = [&broken, &held, &held, &broken, &held, &held, &held, &held];
@@ -351,7 +373,7 @@ mod tests {
     #[test]
     fn without_a_hold_the_first_step_completes() {
         assert_eq!(
-            Judge::new(mission(2), Span::ZERO, STEP).observe(7, Stage::new().scene()),
+            Judge::new(mission(2), Hold::new(Span::ZERO, STEP)).observe(7, Stage::new().scene()),
             Progress::Complete { since: 7 }
         );
     }

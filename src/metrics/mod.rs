@@ -13,6 +13,7 @@ mod record;
 mod recorder;
 mod reports;
 mod series;
+mod spread;
 pub mod statistics;
 pub mod summary;
 mod traffic;
@@ -26,5 +27,7 @@ pub use record::{
     TopicFates, TrafficRow, TrialRecord, Volume,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
+pub use spread::RumorSpread;
 pub use statistics::Estimate;
 pub use summary::Summary;
+pub use traffic::HeaderBytes;

@@ -11,6 +11,7 @@ use crate::radio::LossCause;
 
 use super::detection::{DetectionRecord, StatusTrace};
 use super::latency::LatencyHistogram;
+use super::spread::RumorSpread;
 
 /// Everything that one trial leaves behind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,6 +44,8 @@ pub struct TrialRecord {
     pub faults: Vec<FaultEpisode>,
     /// Every failure of a robot that worked for a target, and how the target got its links back, in order of time.
     pub healing: Vec<HealingEpisode>,
+    /// How each rumour spread, where the protocol has any.
+    pub spread: Vec<RumorSpread>,
     /// Connectivity at each sample time.
     pub connectivity: Vec<ConnectivitySample>,
     /// Traffic over time, in order of time.
@@ -213,7 +216,8 @@ impl FaultKind {
 /// How a mission ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// Every target was held with its links from this control step on, for the time that the scenario asks.
+    /// Every target was held with its links, or every live robot knew every rumour, from this control step on, for the time
+    /// that the scenario asks.
     Completed {
         /// The first such control step, from 0.
         step: u64,
@@ -306,6 +310,8 @@ pub struct TrafficRow {
     pub sent: Volume,
     /// What reached it.
     pub received: Volume,
+    /// The part of it that told it nothing new, as far as the protocol says.
+    pub duplicate: Volume,
     /// What was meant for it and lost, by cause in the order of [`LossCause::ALL`].
     pub lost: [Volume; LossCause::ALL.len()],
 }

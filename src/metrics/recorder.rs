@@ -3,7 +3,7 @@
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::{Change, Subject};
 use crate::geometry::{Pose, Vec2};
-use crate::protocol::{Note, Reception, Topic};
+use crate::protocol::{MessageSize, Note, Reception, Topic};
 use crate::radio::LossCause;
 
 use super::config::MetricsConfig;
@@ -12,11 +12,12 @@ use super::detection::{CopyFate, Scorer, StatusTrace};
 use super::faults::Failures;
 use super::healing::Healing;
 use super::latency::LatencyHistogram;
-use super::mission::{Judge, Mission, Progress, Scene};
+use super::mission::{Hold, Judge, Mission, Progress, Scene};
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
 use super::reports::Reports;
 use super::series::Series;
-use super::traffic::Traffic;
+use super::spread::Spread;
+use super::traffic::{HeaderBytes, Traffic};
 
 /// The shape of a run, known before it starts.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,14 +28,16 @@ pub struct Layout {
     pub topics: usize,
     /// Number of roles of the protocol.
     pub roles: usize,
-    /// Bytes that every frame carries beside its payload.
-    pub header_bytes: u16,
+    /// Bytes of headers on air.
+    pub headers: HeaderBytes,
     /// C, the radio's range, metres.
     pub radio_range: f64,
     /// Length of a control step.
     pub control_period: Span,
     /// What the swarm is asked to do, if anything.
     pub mission: Option<Mission>,
+    /// How many rumours there are that all robots are to know; 0 for none.
+    pub rumors: usize,
     /// How far back a suspicion is traced to the statuses that were missed.
     pub status_memory: Span,
     /// The robot whose statuses are followed one by one, if any.
@@ -77,6 +80,9 @@ pub struct Recorder {
     detection: Scorer,
     trace: Option<StatusTrace>,
     judge: Option<Judge>,
+    spread: Spread,
+    /// How far the rumours have come, if there are any.
+    everyone_knows: Option<Hold>,
     connectivity: Vec<ConnectivitySample>,
     series: Series,
     trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
@@ -88,12 +94,12 @@ impl Recorder {
     /// A recorder for a run of this shape, before its start.
     #[must_use]
     pub fn new(layout: Layout, config: &MetricsConfig) -> Self {
-        let hold = Span::from_secs(config.hold.get());
+        let hold = Hold::new(Span::from_secs(config.hold.get()), layout.control_period);
         Self {
             roles: layout.roles,
             radio_range: layout.radio_range,
             control_period: layout.control_period,
-            traffic: Traffic::new(layout.robots, layout.roles, layout.topics, layout.header_bytes),
+            traffic: Traffic::new(layout.robots, layout.roles, layout.topics, layout.headers),
             latency: LatencyHistogram::default(),
             offered: vec![0; layout.topics],
             in_flight: vec![0; layout.topics],
@@ -102,9 +108,9 @@ impl Recorder {
             healing: Healing::new(layout.topics),
             detection: Scorer::new(layout.robots, layout.status_memory),
             trace: layout.trace.map(StatusTrace::new),
-            judge: layout
-                .mission
-                .map(|mission| Judge::new(mission, hold, layout.control_period)),
+            judge: layout.mission.map(|mission| Judge::new(mission, hold.clone())),
+            spread: Spread::new(layout.rumors, layout.robots),
+            everyone_knows: (layout.rumors > 0).then_some(hold),
             connectivity: Vec::new(),
             series: Series::new(config.series_every),
             trajectories: Vec::new(),
@@ -114,11 +120,11 @@ impl Recorder {
 
     /// `sender` transmitted a frame, however many robots hear it.
     #[inline]
-    pub fn transmitted(&mut self, sender: ActorId, topic: Topic, payload_bytes: u32) {
-        self.traffic.sent(sender, topic, payload_bytes);
+    pub fn transmitted(&mut self, sender: ActorId, topic: Topic, size: MessageSize) {
+        self.traffic.sent(sender, topic, size);
         if self.healing.is_open() {
             let target = self.reports.targets[sender.index()];
-            self.healing.sent(target, topic, payload_bytes);
+            self.healing.sent(target, topic, size.payload_bytes.into());
         }
     }
 
@@ -130,14 +136,14 @@ impl Recorder {
 
     /// A copy meant for `receiver` was lost.
     #[inline]
-    pub fn lost(&mut self, receiver: ActorId, topic: Topic, cause: LossCause, payload_bytes: u32) {
-        self.traffic.lost(receiver, topic, cause, payload_bytes);
+    pub fn lost(&mut self, receiver: ActorId, topic: Topic, cause: LossCause, size: MessageSize) {
+        self.traffic.lost(receiver, topic, cause, size);
     }
 
     /// A copy arrived at `receiver`, `latency` after its transmission began.
     #[inline]
-    pub fn delivered(&mut self, receiver: ActorId, topic: Topic, payload_bytes: u32, latency: Span) {
-        self.traffic.received(receiver, topic, payload_bytes);
+    pub fn delivered(&mut self, receiver: ActorId, topic: Topic, size: MessageSize, latency: Span) {
+        self.traffic.received(receiver, topic, size);
         self.latency.record(latency);
     }
 
@@ -150,10 +156,13 @@ impl Recorder {
     /// `robot` reported a change.
     ///
     /// # Panics
-    /// If it reports a role or a parent that the run does not have.
+    /// If it reports a role, a parent or a rumour that the run does not have.
     pub fn note(&mut self, robot: ActorId, note: &Note) {
-        if let Note::Role(role) = note {
-            self.traffic.enter(robot, *role);
+        match *note {
+            Note::Role(role) => self.traffic.enter(robot, role),
+            Note::Duplicate { topic, size } => self.traffic.duplicate(robot, topic, size),
+            Note::Informed { rumor, at } => self.spread.inform(robot, rumor, at),
+            _ => {}
         }
         self.reports.note(robot, note);
     }
@@ -248,8 +257,12 @@ impl Recorder {
         }
     }
 
-    /// Judges the mission at control step number `step`, from 0, with every robot at its place in `positions`.
+    /// Judges the mission, or how far rumours have come, at control step number `step`, from 0, with every robot at its place
+    /// in `positions`.
     pub fn observe(&mut self, step: u64, positions: &[Vec2]) -> Progress {
+        if let Some(everyone_knows) = &mut self.everyone_knows {
+            return everyone_knows.observe(step, || self.spread.is_complete(&self.failures));
+        }
         let Some(judge) = &mut self.judge else {
             return Progress::Underway;
         };
@@ -275,11 +288,12 @@ impl Recorder {
                 "frames were not conserved on topic {topic}: {fates}"
             );
         }
-        let outcome = self.judge.as_ref().map_or(Outcome::NoMission, |judge| {
-            judge
-                .completed_at()
-                .map_or(Outcome::Censored, |step| Outcome::Completed { step })
-        });
+        let ended = |completed: Option<u64>| completed.map_or(Outcome::Censored, |step| Outcome::Completed { step });
+        let outcome = match (&self.everyone_knows, &self.judge) {
+            (Some(everyone_knows), _) => ended(everyone_knows.completed_at()),
+            (None, Some(judge)) => ended(judge.completed_at()),
+            (None, None) => Outcome::NoMission,
+        };
         TrialRecord {
             trial: end.trial,
             seed: end.seed,
@@ -296,6 +310,7 @@ impl Recorder {
             trace: self.trace,
             faults: self.failures.into_episodes(),
             healing: self.healing.into_episodes(),
+            spread: self.spread.into_records(),
             connectivity: self.connectivity,
             series: self.series.into_entries(),
             robots: robots(self.reports, end.poses),
@@ -351,10 +366,11 @@ mod tests {
             robots: 3,
             topics: 2,
             roles: 2,
-            header_bytes: 5,
+            headers: HeaderBytes { frame: 2, message: 3 },
             radio_range: RANGE,
             control_period: Span::from_secs(0.1),
             mission,
+            rumors: 0,
             status_memory: Span::from_secs(8.0),
             trace: None,
         };
@@ -380,10 +396,10 @@ mod tests {
     #[test]
     fn a_transmission_with_every_fate_balances_and_is_recorded_at_its_receivers() {
         let mut recorder = recorder(None);
-        recorder.transmitted(ActorId(0), Topic(1), 4);
+        recorder.transmitted(ActorId(0), Topic(1), MessageSize::alone(4));
         recorder.offered(Topic(1), 3);
-        recorder.delivered(ActorId(1), Topic(1), 4, Span::from_secs(0.02));
-        recorder.lost(ActorId(2), Topic(1), LossCause::Channel, 4);
+        recorder.delivered(ActorId(1), Topic(1), MessageSize::alone(4), Span::from_secs(0.02));
+        recorder.lost(ActorId(2), Topic(1), LossCause::Channel, MessageSize::alone(4));
         recorder.in_flight(Topic(1));
         let record = recorder.finish(end());
         let mut expected = TopicFates {
@@ -411,9 +427,9 @@ mod tests {
         let mut recorder = recorder(None);
         recorder.offered(Topic(0), 10);
         for _ in 0..2 {
-            recorder.delivered(ActorId(1), Topic(0), 4, Span::ZERO);
+            recorder.delivered(ActorId(1), Topic(0), MessageSize::alone(4), Span::ZERO);
         }
-        recorder.lost(ActorId(2), Topic(0), LossCause::Channel, 4);
+        recorder.lost(ActorId(2), Topic(0), LossCause::Channel, MessageSize::alone(4));
         recorder.in_flight(Topic(0));
         let _ = recorder.finish(end());
     }

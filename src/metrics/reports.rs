@@ -39,8 +39,13 @@ impl Reports {
                 }
                 self.parents[robot.index()].clone_from(parents);
             }
-            // Beliefs about failures change nothing of the traffic, the graph or the mission.
-            Note::Watches(_) | Note::Suspects { .. } | Note::Trusts(_) => {}
+            // Beliefs about failures change nothing of the traffic, the graph or the mission; what was heard twice and who
+            // knows what are kept elsewhere.
+            Note::Watches(_)
+            | Note::Suspects { .. }
+            | Note::Trusts(_)
+            | Note::Duplicate { .. }
+            | Note::Informed { .. } => {}
         }
     }
 

@@ -93,9 +93,10 @@ impl RobotBytes {
 mod tests {
     use super::*;
     use crate::engine::ActorId;
-    use crate::protocol::{Role, Topic};
+    use crate::metrics::traffic::HeaderBytes;
+    use crate::protocol::{MessageSize, Role, Topic};
 
-    const HEADER: u16 = 5;
+    const HEADER: u64 = 5;
 
     fn at(secs: u32) -> SimTime {
         SimTime::from_secs(f64::from(secs))
@@ -103,19 +104,19 @@ mod tests {
 
     /// Three robots, two roles, two topics.
     fn traffic() -> Traffic {
-        Traffic::new(3, 2, 2, HEADER)
+        Traffic::new(3, 2, 2, HeaderBytes { frame: 2, message: 3 })
     }
 
     #[test]
     fn an_entry_holds_what_came_since_the_sample_before_in_whatever_role() {
         let (mut series, mut traffic) = (Series::new(1), traffic());
-        traffic.sent(ActorId(0), Topic(0), 100);
+        traffic.sent(ActorId(0), Topic(0), MessageSize::alone(100));
         series.sample(at(0), &traffic);
-        traffic.sent(ActorId(0), Topic(0), 4);
+        traffic.sent(ActorId(0), Topic(0), MessageSize::alone(4));
         traffic.enter(ActorId(0), Role(1));
-        traffic.sent(ActorId(0), Topic(0), 6);
-        traffic.sent(ActorId(1), Topic(1), 10);
-        traffic.received(ActorId(2), Topic(1), 10);
+        traffic.sent(ActorId(0), Topic(0), MessageSize::alone(6));
+        traffic.sent(ActorId(1), Topic(1), MessageSize::alone(10));
+        traffic.received(ActorId(2), Topic(1), MessageSize::alone(10));
         series.sample(at(1), &traffic);
         let entries = series.into_entries();
         let spread = |total, min, median, max| RobotBytes {
@@ -140,14 +141,14 @@ mod tests {
     fn entries_add_up_to_the_traffic_between_the_first_and_the_last_of_their_samples() {
         let (mut series, mut traffic) = (Series::new(2), traffic());
         for second in 0..8 {
-            traffic.received(ActorId(second % 3), Topic(0), second);
+            traffic.received(ActorId(second % 3), Topic(0), MessageSize::alone(second as u16));
             series.sample(at(second), &traffic);
         }
         let entries = series.into_entries();
         let times: Vec<_> = entries.iter().map(|entry| (entry.since, entry.at)).collect();
         assert_eq!(times, [(at(0), at(2)), (at(2), at(4)), (at(4), at(6))]);
         let bytes: u64 = entries.iter().map(|entry| entry.received[0].total).sum();
-        assert_eq!(bytes, (1..=6).map(|second| second + u64::from(HEADER)).sum::<u64>());
+        assert_eq!(bytes, (1..=6).map(|second| second + HEADER).sum::<u64>());
     }
 
     #[test]

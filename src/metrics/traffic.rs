@@ -1,30 +1,64 @@
-//! Frames and bytes by robot, role and topic: a table that a reception finds its cell in by two additions.
+//! Messages and bytes by robot, role and topic: a table that a reception finds its cell in by two additions.
 
 use crate::engine::ActorId;
-use crate::protocol::{Role, Topic};
+use crate::protocol::{MessageSize, Role, Topic};
 use crate::radio::LossCause;
 
 use super::record::{TrafficRow, Volume};
 
-/// Frames and their payload; headers follow from the number of frames.
+/// Bytes that messages carry beside their payload.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HeaderBytes {
+    /// Of each frame, for which its first message answers.
+    pub frame: u16,
+    /// Of each message.
+    pub message: u16,
+}
+
+/// Messages and their payload; headers follow from the number of messages and of those that rode in another's frame.
 #[derive(Clone, Copy, Debug, Default)]
 struct Count {
     frames: u64,
     payload_bytes: u64,
 }
 
-impl Count {
-    #[inline]
-    fn add(&mut self, payload_bytes: u32) {
-        self.frames += 1;
-        self.payload_bytes += u64::from(payload_bytes);
+/// What went one way, cell by cell. Riders stand apart: without piggybacking there are none, and they take no room.
+#[derive(Debug, Default)]
+struct Ledger {
+    counts: Vec<Count>,
+    riders: Vec<u64>,
+}
+
+impl Ledger {
+    fn new(cells: usize) -> Self {
+        Self {
+            counts: vec![Count::default(); cells],
+            riders: Vec::new(),
+        }
     }
 
-    fn volume(self, header_bytes: u16) -> Volume {
+    #[inline]
+    fn add(&mut self, cell: usize, size: MessageSize) {
+        let count = &mut self.counts[cell];
+        count.frames += 1;
+        count.payload_bytes += u64::from(size.payload_bytes);
+        if size.rides {
+            self.riders.resize(self.counts.len(), 0);
+            self.riders[cell] += 1;
+        }
+    }
+
+    fn count(&self, cell: usize) -> Count {
+        self.counts.get(cell).copied().unwrap_or_default()
+    }
+
+    fn volume(&self, cell: usize, headers: HeaderBytes) -> Volume {
+        let Count { frames, payload_bytes } = self.count(cell);
+        let begun = frames - self.riders.get(cell).copied().unwrap_or_default();
         Volume {
-            frames: self.frames,
-            payload_bytes: self.payload_bytes,
-            header_bytes: self.frames * u64::from(header_bytes),
+            frames,
+            payload_bytes,
+            header_bytes: frames * u64::from(headers.message) + begun * u64::from(headers.frame),
         }
     }
 }
@@ -42,26 +76,29 @@ pub(super) struct RobotTraffic {
 pub(super) struct Traffic {
     roles: usize,
     topics: usize,
-    header_bytes: u16,
-    sent: Vec<Count>,
-    received: Vec<Count>,
+    headers: HeaderBytes,
+    sent: Ledger,
+    received: Ledger,
+    /// Takes no room before the first.
+    duplicate: Ledger,
     /// A table for each cause, in the order of their numbers.
-    lost: [Vec<Count>; LossCause::ALL.len()],
+    lost: [Ledger; LossCause::ALL.len()],
     /// Where the cells of each robot's present role begin in these tables.
     starts: Vec<u32>,
 }
 
 impl Traffic {
     /// No traffic yet, every robot in the first role.
-    pub(super) fn new(robots: usize, roles: usize, topics: usize, header_bytes: u16) -> Self {
+    pub(super) fn new(robots: usize, roles: usize, topics: usize, headers: HeaderBytes) -> Self {
         let cells = robots * roles * topics;
         Self {
             roles,
             topics,
-            header_bytes,
-            sent: vec![Count::default(); cells],
-            received: vec![Count::default(); cells],
-            lost: LossCause::ALL.map(|_| vec![Count::default(); cells]),
+            headers,
+            sent: Ledger::new(cells),
+            received: Ledger::new(cells),
+            duplicate: Ledger::default(),
+            lost: LossCause::ALL.map(|_| Ledger::new(cells)),
             starts: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
         }
     }
@@ -81,21 +118,28 @@ impl Traffic {
     }
 
     #[inline]
-    pub(super) fn sent(&mut self, robot: ActorId, topic: Topic, payload_bytes: u32) {
+    pub(super) fn sent(&mut self, robot: ActorId, topic: Topic, size: MessageSize) {
         let cell = self.cell(robot, topic);
-        self.sent[cell].add(payload_bytes);
+        self.sent.add(cell, size);
     }
 
     #[inline]
-    pub(super) fn received(&mut self, robot: ActorId, topic: Topic, payload_bytes: u32) {
+    pub(super) fn received(&mut self, robot: ActorId, topic: Topic, size: MessageSize) {
         let cell = self.cell(robot, topic);
-        self.received[cell].add(payload_bytes);
+        self.received.add(cell, size);
+    }
+
+    /// What was received told its receiver nothing new.
+    pub(super) fn duplicate(&mut self, robot: ActorId, topic: Topic, size: MessageSize) {
+        let cell = self.cell(robot, topic);
+        self.duplicate.counts.resize(self.sent.counts.len(), Count::default());
+        self.duplicate.add(cell, size);
     }
 
     #[inline]
-    pub(super) fn lost(&mut self, robot: ActorId, topic: Topic, cause: LossCause, payload_bytes: u32) {
+    pub(super) fn lost(&mut self, robot: ActorId, topic: Topic, cause: LossCause, size: MessageSize) {
         let cell = self.cell(robot, topic);
-        self.lost[cause as usize][cell].add(payload_bytes);
+        self.lost[cause as usize].add(cell, size);
     }
 
     #[inline]
@@ -116,41 +160,43 @@ impl Traffic {
 
     /// Bytes of each robot on each topic, in whatever role, headers included: robot by robot, topic by topic.
     pub(super) fn by_robot_and_topic(&self) -> Vec<RobotTraffic> {
-        let bytes = |count: &Count| count.volume(self.header_bytes).bytes();
         let robots = self.starts.len();
         let mut sums = vec![RobotTraffic::default(); robots * self.topics];
         let per_robot = self.roles * self.topics;
-        for (cell, (sent, received)) in self.sent.iter().zip(&self.received).enumerate() {
+        for cell in 0..self.sent.counts.len() {
             let sum = &mut sums[cell / per_robot * self.topics + cell % self.topics];
-            sum.sent_bytes += bytes(sent);
-            sum.received_bytes += bytes(received);
+            sum.sent_bytes += self.sent.volume(cell, self.headers).bytes();
+            sum.received_bytes += self.received.volume(cell, self.headers).bytes();
         }
         sums
     }
 
     /// The cells that saw traffic, by robot, role, topic.
     pub(super) fn rows(&self) -> Vec<TrafficRow> {
-        (0..self.sent.len())
+        (0..self.sent.counts.len())
             .filter(|&cell| self.saw_traffic(cell))
             .map(|cell| self.row(cell))
             .collect()
     }
 
     fn saw_traffic(&self, cell: usize) -> bool {
-        let lost = self.lost.iter().any(|counts| counts[cell].frames > 0);
-        lost || self.sent[cell].frames > 0 || self.received[cell].frames > 0
+        let ways = [&self.sent, &self.received, &self.duplicate];
+        ways.into_iter()
+            .chain(&self.lost)
+            .any(|ledger| ledger.count(cell).frames > 0)
     }
 
     fn row(&self, cell: usize) -> TrafficRow {
         let per_robot = self.roles * self.topics;
-        let volume = |count: Count| count.volume(self.header_bytes);
+        let volume = |ledger: &Ledger| ledger.volume(cell, self.headers);
         TrafficRow {
             robot: ActorId((cell / per_robot) as u32),
             role: (cell % per_robot / self.topics) as u8,
             topic: (cell % self.topics) as u8,
-            sent: volume(self.sent[cell]),
-            received: volume(self.received[cell]),
-            lost: LossCause::ALL.map(|cause| volume(self.lost[cause as usize][cell])),
+            sent: volume(&self.sent),
+            received: volume(&self.received),
+            duplicate: volume(&self.duplicate),
+            lost: LossCause::ALL.map(|cause| volume(&self.lost[cause as usize])),
         }
     }
 }
@@ -159,15 +205,17 @@ impl Traffic {
 mod tests {
     use super::*;
 
+    const HEADERS: HeaderBytes = HeaderBytes { frame: 2, message: 3 };
+
     #[test]
     fn traffic_is_accounted_to_the_role_held_when_it_flowed() {
-        let mut traffic = Traffic::new(2, 2, 2, 5);
+        let mut traffic = Traffic::new(2, 2, 2, HEADERS);
         let robot = ActorId(1);
-        traffic.sent(robot, Topic(0), 4);
+        traffic.sent(robot, Topic(0), MessageSize::alone(4));
         traffic.enter(robot, Role(1));
-        traffic.received(robot, Topic(1), 7);
-        traffic.received(robot, Topic(1), 9);
-        traffic.lost(robot, Topic(1), LossCause::Channel, 3);
+        traffic.received(robot, Topic(1), MessageSize::alone(7));
+        traffic.received(robot, Topic(1), MessageSize::alone(9));
+        traffic.lost(robot, Topic(1), LossCause::Channel, MessageSize::alone(3));
         let rows = traffic.rows();
         assert_eq!(
             rows.iter()
@@ -202,8 +250,22 @@ mod tests {
     }
 
     #[test]
+    fn of_a_frame_with_several_messages_the_first_answers_for_the_frames_header() {
+        let mut traffic = Traffic::new(1, 1, 2, HEADERS);
+        let rider = MessageSize {
+            payload_bytes: 6,
+            rides: true,
+        };
+        traffic.sent(ActorId(0), Topic(0), MessageSize::alone(4));
+        traffic.sent(ActorId(0), Topic(1), rider);
+        traffic.sent(ActorId(0), Topic(1), rider);
+        let headers: Vec<u64> = traffic.rows().iter().map(|row| row.sent.header_bytes).collect();
+        assert_eq!(headers, [5, 6]);
+    }
+
+    #[test]
     #[should_panic(expected = "role 2 reported by robot 0, but the protocol has 2 roles")]
     fn a_role_that_the_protocol_does_not_have_is_refused() {
-        Traffic::new(1, 2, 1, 0).enter(ActorId(0), Role(2));
+        Traffic::new(1, 2, 1, HEADERS).enter(ActorId(0), Role(2));
     }
 }

@@ -19,6 +19,7 @@ mod grid;
 mod occupancy;
 mod pid;
 mod rules;
+mod spacing;
 mod world;
 
 #[cfg(test)]
@@ -28,4 +29,5 @@ pub use config::{ArenaConfig, DeployConfig, MotionConfig, ObstacleConfig, PidCon
 pub use contact::OVERLAP_TOLERANCE;
 pub use deploy::{DeployError, Hindrance, deploy};
 pub use rules::Problem;
+pub use spacing::Spacing;
 pub use world::World;

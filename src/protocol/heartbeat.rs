@@ -1,7 +1,7 @@
 //! Heartbeats and a failure detector on their own: the workload on which detectors and drivers are measured.
 //!
 //! Every robot broadcasts a 4-byte status, and its detector believes what it believes of those that it hears. Robots stand
-//! still.
+//! still, or wander.
 
 use std::convert::Infallible;
 use std::marker::PhantomData;
@@ -11,32 +11,45 @@ use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
 use super::detector::{Carried, Circumstances, Detector, DetectorConfig, Monitored, Probe, Sign};
-use super::gossip::GossipConfig;
+use super::gossip::{GossipConfig, Turns};
+use super::wander::{Ground, Wander};
 use super::{CodecError, Input, Output, Protocol, Topic, Wake};
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, Streams};
 
 /// Settings that all robots share.
 #[derive(Debug)]
 pub struct Settings {
-    /// Control steps from one status to the next.
-    status_every: u64,
+    status_turns: Turns,
     detector: DetectorConfig,
     circumstances: Circumstances,
+    ground: Ground,
 }
 
 impl Settings {
-    /// From a scenario's gossip and detector settings, for a swarm of `robots`.
+    /// From a scenario's gossip and detector settings, for a swarm of `robots`, in a trial with these `streams`.
     #[must_use]
-    pub fn new(gossip: &GossipConfig, detector: &DetectorConfig, control_period: Span, robots: usize) -> Self {
-        let status_every = gossip.status.steps(control_period);
+    pub fn new(
+        gossip: &GossipConfig,
+        detector: &DetectorConfig,
+        control_period: Span,
+        robots: usize,
+        streams: Streams,
+    ) -> Self {
         Self {
-            status_every,
+            status_turns: Turns::new(gossip.status.timing(control_period), 0, streams),
             detector: detector.clone(),
             circumstances: Circumstances {
                 robots,
-                status_interval: control_period * status_every,
+                status_interval: gossip.status.longest_pause(control_period),
             },
+            ground: Ground::still(),
         }
+    }
+
+    /// The same, for robots that move on `ground`.
+    #[must_use]
+    pub fn wandering(self, ground: Ground) -> Self {
+        Self { ground, ..self }
     }
 }
 
@@ -74,10 +87,12 @@ impl<P: Carried> Monitored for Message<P> {
 /// be one that can carry that.
 #[derive(Debug)]
 pub struct Heartbeat<P = Infallible> {
+    id: ActorId,
     settings: Rc<Settings>,
     control_steps: u64,
     sent: u32,
     detector: Detector,
+    wander: Wander,
     carries: PhantomData<P>,
 }
 
@@ -86,10 +101,12 @@ impl<P> Heartbeat<P> {
     #[must_use]
     pub fn new(id: ActorId, settings: Rc<Settings>) -> Self {
         Self {
+            id,
             detector: Detector::new(&settings.detector, settings.circumstances, id),
             settings,
             control_steps: 0,
             sent: 0,
+            wander: Wander::default(),
             carries: PhantomData,
         }
     }
@@ -117,7 +134,11 @@ impl<P: Carried> Protocol for Heartbeat<P> {
         match input.wake {
             Wake::Timer(_) => self.detector.expire(now, &mut input.random, output),
             Wake::ControlStep => {
-                if self.control_steps.is_multiple_of(self.settings.status_every) {
+                let settings = &self.settings;
+                output.velocity = self
+                    .wander
+                    .velocity(&settings.ground, self.id, now, input.pose.position);
+                if settings.status_turns.is_due(self.id, self.control_steps) {
                     output.broadcasts.push(Message::Status(Status { number: self.sent }));
                     self.sent = (self.sent + 1) % NUMBERS;
                 }

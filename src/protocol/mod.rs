@@ -17,6 +17,8 @@ pub mod detector;
 pub mod gossip;
 pub mod heartbeat;
 mod robot_table;
+pub mod rumor;
+pub mod wander;
 
 /// Index of a topic in [`Protocol::TOPICS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -95,18 +97,38 @@ pub struct Input<M> {
     pub random: Philox,
 }
 
-/// A frame as its receivers get it: decoded once, for its bytes are the same at every receiver, and then copied into each
+/// How long a message is on air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MessageSize {
+    /// Its payload in bytes, headers not included.
+    pub payload_bytes: u16,
+    /// Whether it rides in a frame that another message before it began: then that one answers for the frame's header.
+    pub rides: bool,
+}
+
+impl MessageSize {
+    /// Of a message in a frame of its own.
+    #[must_use]
+    pub const fn alone(payload_bytes: u16) -> Self {
+        Self {
+            payload_bytes,
+            rides: false,
+        }
+    }
+}
+
+/// A message as its receivers get it: decoded once, for its bytes are the same at every receiver, and then copied into each
 /// inbox, so that reading an inbox is reading one stretch of memory.
 #[derive(Clone, Debug)]
 pub struct Frame<M> {
     /// Who sent it (the frame's header carries it).
     pub sender: ActorId,
-    /// Its number among the sender's frames.
+    /// Its number among the sender's messages, which is that of its frame where each has one of its own.
     pub sequence: u32,
     /// When its transmission began.
     pub sent_at: SimTime,
-    /// Length of its payload in bytes, header not included.
-    pub payload_bytes: u32,
+    /// How long it is.
+    pub size: MessageSize,
     /// What its payload says.
     pub message: M,
 }
@@ -124,6 +146,15 @@ pub struct Reception<M> {
 }
 
 impl<M> Reception<M> {
+    /// What the metrics should know if it told its receiver nothing new on its `topic`.
+    #[must_use]
+    pub const fn duplicate(&self, topic: Topic) -> Note {
+        Note::Duplicate {
+            topic,
+            size: self.frame.size,
+        }
+    }
+
     /// [`displacement`](Self::displacement) as a vector.
     #[must_use]
     pub fn displacement(&self) -> Vec2 {
@@ -189,6 +220,21 @@ pub enum Note {
     },
     /// It believes so no longer.
     Trusts(ActorId),
+    /// It read a message that told it nothing new ([`Reception::duplicate`]), in the role that it had last reported: to be noted
+    /// before a change of role.
+    Duplicate {
+        /// Its topic.
+        topic: Topic,
+        /// How long it is.
+        size: MessageSize,
+    },
+    /// It knows this rumour since then.
+    Informed {
+        /// The rumour, from 0.
+        rumor: u16,
+        /// When it arrived, or was begun here.
+        at: SimTime,
+    },
 }
 
 /// What a suspicion goes by.

@@ -16,8 +16,10 @@ pub struct RadioConfig {
     pub loss: LossConfig,
     /// How long a frame takes from transmission to arrival, drawn for each reception on its own.
     pub latency: LatencyConfig,
-    /// Bytes that every frame carries beside its payload. 5: a 2-byte sender and a 3-byte message header.
-    pub header_bytes: u16,
+    /// Bytes that every frame carries once, whatever is in it. 2: its sender.
+    pub frame_header_bytes: u16,
+    /// Bytes that every message in a frame carries beside its payload. 3: its topic and its length.
+    pub message_header_bytes: u16,
     /// Noise of the receiver's sense of where a sender is.
     pub sensing: SensingConfig,
 }
@@ -28,7 +30,8 @@ impl Default for RadioConfig {
             range: Positive::new(2.0),
             loss: LossConfig::None,
             latency: LatencyConfig::Constant(NonNegative::new(0.1)),
-            header_bytes: 5,
+            frame_header_bytes: 2,
+            message_header_bytes: 3,
             sensing: SensingConfig::default(),
         }
     }

@@ -21,11 +21,13 @@ mod config;
 mod draw;
 mod gilbert;
 mod latency;
+mod law;
 mod loss;
 mod medium;
 mod sensing;
 
 pub use config::{LatencyConfig, LossConfig, RadioConfig, SensingConfig};
+pub use law::{LossChain, LossRun};
 pub use medium::Medium;
 
 use serde::{Deserialize, Serialize};

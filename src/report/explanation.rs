@@ -92,6 +92,8 @@ pub enum Fate {
     UnderWay {
         /// When it was to arrive.
         arrives_s: f64,
+        /// Why it was lost on its arrival, if it was: a name of [`LossCause`].
+        lost: Option<&'static str>,
     },
     /// It arrived.
     Arrived {
@@ -298,12 +300,16 @@ fn explain(number: usize, suspicion: &Suspicion, trace: &StatusTrace) -> Explain
 fn status_at(observer: ActorId, status: &detection::Status, now: SimTime) -> Status {
     let fate = match status.copy_for(observer) {
         None => Fate::OutOfRange,
-        Some(copy) => match copy.fate {
-            CopyFate::Lost(cause) => Fate::Lost { cause: cause.name() },
-            CopyFate::Arrives(at) if at > now => Fate::UnderWay {
+        Some(copy) => match (copy.due, copy.fate) {
+            (Some(at), fate) if at > now => Fate::UnderWay {
                 arrives_s: at.as_secs(),
+                lost: match fate {
+                    CopyFate::Lost(cause) => Some(cause.name()),
+                    CopyFate::Arrives(_) => None,
+                },
             },
-            CopyFate::Arrives(at) => Fate::Arrived {
+            (_, CopyFate::Lost(cause)) => Fate::Lost { cause: cause.name() },
+            (_, CopyFate::Arrives(at)) => Fate::Arrived {
                 arrived_s: at.as_secs(),
                 read_s: copy.read.map(SimTime::as_secs),
             },
@@ -358,7 +364,11 @@ fn fate(status: &Status, out_of_range: &str) -> String {
     match status.fate {
         Fate::Lost { cause } => loss(cause).to_owned(),
         Fate::OutOfRange => out_of_range.to_owned(),
-        Fate::UnderWay { arrives_s } => format!("under way until {arrives_s:.3} s"),
+        Fate::UnderWay { arrives_s, lost: None } => format!("under way until {arrives_s:.3} s"),
+        Fate::UnderWay {
+            arrives_s,
+            lost: Some(cause),
+        } => format!("under way until {arrives_s:.3} s, then {}", loss(cause)),
         Fate::Arrived {
             arrived_s,
             read_s: None,

@@ -72,6 +72,15 @@ impl Page {
         }
     }
 
+    /// An item of a list, over as many lines as it needs, all but the first indented.
+    pub fn item(&mut self, words: &str) {
+        let mut indent = "  ";
+        for line in wrap(words, WIDTH - 4) {
+            self.line(&format!("{indent}{line}"));
+            indent = "    ";
+        }
+    }
+
     /// A line as it is.
     pub fn line(&mut self, words: &str) {
         // Writing to a string does not fail.

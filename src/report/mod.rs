@@ -6,9 +6,13 @@ mod failures;
 mod html;
 mod layout;
 mod number;
+mod preflight;
+mod spread;
+mod surprises;
 mod terminal;
 
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use html::{PAGE_MARK, PageInput, page};
+pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};

@@ -7,8 +7,11 @@ use comfy_table::{CellAlignment, ContentArrangement, Table};
 use super::failures;
 use super::layout::{Page, RULED, WIDTH};
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
+use super::spread;
+use super::surprises;
 use crate::metrics::Summary;
 use crate::metrics::summary::{Detection, Directions, Quantity, Spread, TopicBandwidth};
+use crate::predict::Surprise;
 
 /// What a report is made of.
 #[derive(Debug)]
@@ -19,6 +22,8 @@ pub struct Input<'a> {
     pub summary: &'a Summary,
     /// Length of a control step, seconds.
     pub control_period_s: f64,
+    /// Where the run is not as predicted.
+    pub surprises: &'a [Surprise],
     /// What the run took.
     pub speed: Speed,
     /// Where the results are.
@@ -50,10 +55,12 @@ pub fn terminal(input: &Input) -> String {
     page.title(&input.summary.scenario, input.question);
     outcome(&mut page, input);
     failures::section(&mut page, input.summary);
+    spread::section(&mut page, input.summary);
     bandwidth(&mut page, input.summary);
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
     detection(&mut page, &input.summary.detection);
+    surprises::section(&mut page, input.surprises);
     run(&mut page, input);
     page.text
 }
@@ -232,6 +239,13 @@ fn radio(page: &mut Page, summary: &Summary) {
         count(fates.in_flight)
     );
     page.entry("offered", &balance);
+    if let Some(duplicates) = &summary.duplicates {
+        let share = estimate(&duplicates.total, percent);
+        page.entry(
+            "duplicates",
+            &format!("{share} of what was delivered told its receiver nothing new"),
+        );
+    }
 }
 
 fn connectivity(page: &mut Page, summary: &Summary) {

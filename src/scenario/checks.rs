@@ -7,11 +7,13 @@ use crate::faults;
 use crate::motion::DeployConfig;
 use crate::protocol::Protocol as _;
 use crate::protocol::backbone::Backbone;
+use crate::protocol::gossip::FanOutConfig;
 use crate::protocol::heartbeat::Heartbeat;
+use crate::protocol::rumor::Rumor;
 use crate::quantity::Positive;
 
 use super::path::FieldPath;
-use super::{ProtocolConfig, Scenario, detector, limits};
+use super::{ProtocolConfig, Scenario, detector, gossip, limits};
 
 /// Something wrong with a scenario whose fields are each of the right form.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +39,7 @@ impl Problem {
     }
 
     /// A problem that a section found in itself, at a path relative to it.
-    fn of_section(section: &str, (path, message): (String, String)) -> Self {
+    pub(super) fn of_section(section: &str, (path, message): (String, String)) -> Self {
         let dot = if path.is_empty() || path.starts_with('[') {
             ""
         } else {
@@ -73,6 +75,7 @@ pub fn problems(scenario: &Scenario) -> Vec<Problem> {
         found.extend(times(scenario));
         found.extend(detector::problems(scenario));
         found.extend(sizes(scenario));
+        found.extend(gossip::problems(scenario));
     }
     found.extend(name(scenario));
     found.extend(sections(scenario));
@@ -126,6 +129,7 @@ fn sections(scenario: &Scenario) -> Vec<Problem> {
     let (protocol, roles) = match &scenario.protocol {
         ProtocolConfig::Backbone(backbone) => (backbone.problems(swarm.robots, radio.range.get()), Backbone::ROLES),
         ProtocolConfig::Heartbeat => (Vec::new(), <Heartbeat>::ROLES),
+        ProtocolConfig::Rumor(rumor) => (rumor.problems(swarm.robots), Rumor::ROLES),
     };
     let faults = faults::problems(&scenario.faults, swarm.robots, roles);
     let around = ["swarm.robots", "arena.size", "motion.body_radius"];
@@ -153,6 +157,7 @@ fn periods(scenario: &Scenario) -> Vec<Problem> {
         ("gossip.status.interval", gossip.status.interval),
         ("gossip.strand.interval", gossip.strand.interval),
         ("gossip.request.interval", gossip.request.interval),
+        ("gossip.relay.interval", gossip.relay.interval),
     ];
     let mut found: Vec<_> = periods
         .into_iter()
@@ -198,9 +203,13 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         let help = "make `time_limit` longer than `control.period`";
         found.push(Problem::new("time_limit", message, help).with(&["control.period"]));
     }
-    if matches!(scenario.protocol, ProtocolConfig::Backbone(_)) && hold >= time_limit {
-        let message =
-            format!("no trial can complete: targets must be held for {hold} s, and a trial ends at {time_limit} s");
+    let held = match scenario.protocol {
+        ProtocolConfig::Backbone(_) => Some("targets must be held"),
+        ProtocolConfig::Rumor(_) => Some("rumours must be known to all"),
+        ProtocolConfig::Heartbeat => None,
+    };
+    if let Some(held) = held.filter(|_| hold >= time_limit) {
+        let message = format!("no trial can complete: {held} for {hold} s, and a trial ends at {time_limit} s");
         let help = "make `time_limit` longer, or `metrics.hold` shorter";
         found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
     }
@@ -220,14 +229,20 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
     };
     let positions = robots * samples;
     let gossip = &scenario.gossip;
-    let intervals = [&gossip.status, &gossip.strand, &gossip.request].map(|topic| topic.interval.get());
+    let intervals = [
+        gossip.status.interval,
+        gossip.strand.interval,
+        gossip.request.interval,
+        gossip.relay.interval,
+    ];
     let shortest = intervals
         .into_iter()
+        .map(Positive::get)
         .fold(f64::INFINITY, f64::min)
         .max(scenario.control.period.get());
     // Frames that a robot has in the air at once.
     let overlap = 1.0 + scenario.radio.latency.mean().min(time_limit) / shortest;
-    let copies = robots * neighbours(scenario) * overlap;
+    let copies = robots * neighbours(scenario) * overlap * burst(scenario);
     let bound = |path: &str, also: &[&str], what: &str, value: f64, most: f64, help: &str| {
         (value > most).then(|| {
             let message = format!("{value:.3e} {what}, more than the {most:.0e} that a trial may have");
@@ -277,6 +292,15 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// Messages that a robot sends at once, an upper bound.
+fn burst(scenario: &Scenario) -> f64 {
+    match (&scenario.protocol, scenario.gossip.relay.fan_out) {
+        (ProtocolConfig::Rumor(rumor), FanOutConfig::Peers(peers)) => rumor.sources.rumors() as f64 * f64::from(peers),
+        (ProtocolConfig::Rumor(rumor), FanOutConfig::Everyone) => rumor.sources.rumors() as f64,
+        (ProtocolConfig::Backbone(_) | ProtocolConfig::Heartbeat, _) => 1.0,
+    }
 }
 
 /// Robots that hear a broadcast at the start, an upper bound: as dense as they are deployed, and never overlapping.

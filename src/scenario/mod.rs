@@ -13,6 +13,7 @@ mod explain;
 mod file;
 #[cfg(test)]
 mod generated;
+mod gossip;
 mod limits;
 mod lines;
 mod overrides;
@@ -47,6 +48,8 @@ use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
 use crate::protocol::heartbeat::Heartbeat;
+use crate::protocol::rumor::{Rumor, RumorConfig};
+use crate::protocol::wander::WanderConfig;
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
 
@@ -79,7 +82,10 @@ pub struct Scenario {
     pub control: ControlConfig,
     /// What robots run.
     pub protocol: ProtocolConfig,
-    /// How often robots repeat what they gossip.
+    /// How robots move whose protocol has no motion of its own: not at all by default.
+    #[serde(default)]
+    pub wander: WanderConfig,
+    /// How robots repeat what they gossip.
     #[serde(default)]
     pub gossip: GossipConfig,
     /// When a robot believes that a neighbour is down.
@@ -103,7 +109,7 @@ impl Scenario {
         let period = Span::from_secs(self.control.period.get());
         Circumstances {
             robots: self.swarm.robots as usize,
-            status_interval: period * self.gossip.status.steps(period),
+            status_interval: self.gossip.status.longest_pause(period),
         }
     }
 }
@@ -133,8 +139,10 @@ pub struct SwarmConfig {
 pub enum ProtocolConfig {
     /// The paper's failure-tolerant connectivity backbone.
     Backbone(BackboneConfig),
-    /// Status broadcasts and timeouts alone, on robots that stand still.
+    /// Status broadcasts and timeouts alone.
     Heartbeat,
+    /// Rumours that spread, until all robots know all of them.
+    Rumor(RumorConfig),
 }
 
 impl ProtocolConfig {
@@ -144,6 +152,7 @@ impl ProtocolConfig {
         match self {
             Self::Backbone(_) => Backbone::TOPICS,
             Self::Heartbeat => <Heartbeat>::TOPICS,
+            Self::Rumor(_) => Rumor::TOPICS,
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::faults::Faults;
 use crate::metrics::Recorder;
 use crate::metrics::detection::CopyFate;
 use crate::motion::World;
-use crate::protocol::{Frame, Protocol, Reception};
+use crate::protocol::{Frame, MessageSize, Protocol, Reception};
 use crate::radio::{Fate, Listener, LossCause, Medium};
 
 /// From an instant to the next.
@@ -41,6 +41,11 @@ pub struct Air<P: Protocol> {
     /// The payload under way, and who hears the present sender: buffers, kept to be used again.
     payload: BytesMut,
     listeners: Vec<Listener>,
+    /// The messages of the present frame: one, or all of a wake where they share one.
+    aboard: Vec<Frame<P::Message>>,
+    piggyback: bool,
+    /// For each robot the number of its next message.
+    sequences: Vec<u32>,
     /// The copies of the present frame that will arrive. Fates are decided first and inboxes filled after: the one is
     /// arithmetic, the other waits for memory, and apart each runs at its own pace.
     arrivals: Vec<Arrival>,
@@ -58,14 +63,18 @@ pub struct Air<P: Protocol> {
 }
 
 impl<P: Protocol> Air<P> {
-    /// An empty air around `robots` robots. `wake_on_reception`: whether [`reached`](Self::take_reached) is kept.
-    pub fn new(medium: Medium, robots: usize, wake_on_reception: bool) -> Self {
+    /// An empty air around `robots` robots. `piggyback`: whether the messages of a wake share a frame; `wake_on_reception`:
+    /// whether [`reached`](Self::take_reached) is kept.
+    pub fn new(medium: Medium, robots: usize, piggyback: bool, wake_on_reception: bool) -> Self {
         Self {
             medium,
             codec: P::Codec::default(),
             inboxes: std::iter::repeat_with(Inbox::default).take(robots).collect(),
             payload: BytesMut::with_capacity(256),
             listeners: Vec::new(),
+            aboard: Vec::new(),
+            piggyback,
+            sequences: vec![0; robots],
             arrivals: Vec::new(),
             hindrances: Vec::new(),
             reachable: Vec::new(),
@@ -103,7 +112,14 @@ impl<P: Protocol> Air<P> {
             self.hindrances.extend(self.listeners.iter().map(hindrance));
         }
         for message in messages {
-            self.transmit(now, sender, message, faults, recorder, digest)?;
+            let frame = self.encode(now, sender, message, recorder, digest)?;
+            self.aboard.push(frame);
+            if !self.piggyback {
+                self.transmit(now, sender, faults, recorder);
+            }
+        }
+        if !self.aboard.is_empty() {
+            self.transmit(now, sender, faults, recorder);
         }
         if let Some(trace) = recorder.trace_of(sender) {
             trace.distances(now, distances(now, sender, self.inboxes.len(), world));
@@ -111,44 +127,54 @@ impl<P: Protocol> Air<P> {
         Ok(())
     }
 
-    fn transmit(
+    /// The bytes of `message`, and what its receivers make of them.
+    fn encode(
         &mut self,
         now: SimTime,
         sender: ActorId,
         message: P::Message,
-        faults: &Faults,
         recorder: &mut Recorder,
         digest: &mut Digest,
-    ) -> Result<(), RunError> {
+    ) -> Result<Frame<P::Message>, RunError> {
         let topic = P::topic(&message);
         self.payload.clear();
         self.codec.encode(message, &mut self.payload)?;
-        let payload_bytes = self.payload.len() as u32;
+        let bytes = self.payload.len();
+        let size = MessageSize {
+            payload_bytes: u16::try_from(bytes).map_err(|_| RunError::TooLong { topic, bytes })?,
+            rides: !self.aboard.is_empty(),
+        };
         digest.payload(&self.payload);
         // Every receiver gets the same bytes, so they are decoded once for all.
         let message = self
             .codec
             .decode(&mut self.payload)?
             .ok_or(RunError::Undecodable { topic })?;
-        recorder.transmitted(sender, topic, payload_bytes);
-        let is_status = P::STATUS == Some(topic);
-        if is_status {
-            recorder.status_sent(now, sender, self.medium.upcoming(sender));
+        let sequence = self.sequences[sender.index()];
+        self.sequences[sender.index()] = sequence.wrapping_add(1);
+        recorder.transmitted(sender, topic, size);
+        if P::STATUS == Some(topic) {
+            recorder.status_sent(now, sender, sequence);
         }
         recorder.offered(topic, self.listeners.len() as u64);
-        let frame = Frame {
+        Ok(Frame {
             sender,
-            sequence: self.medium.upcoming(sender),
+            sequence,
             sent_at: now,
-            payload_bytes,
+            size,
             message,
-        };
+        })
+    }
+
+    /// Transmits the messages aboard as one frame: at each receiver they share one fate.
+    fn transmit(&mut self, now: SimTime, sender: ActorId, faults: &Faults, recorder: &mut Recorder) {
         if !self.hindrances.is_empty() {
-            self.hinder(&frame, faults, recorder);
+            self.hinder(sender, faults, recorder);
         }
         let Self {
             medium,
             arrivals,
+            aboard,
             listeners,
             reachable,
             hindrances,
@@ -161,32 +187,45 @@ impl<P: Protocol> Air<P> {
                 at,
                 displacement,
             }),
-            Fate::Lost(cause) => record_loss::<P>(receiver, &frame, cause, recorder),
+            Fate::Lost(cause) => {
+                for frame in &*aboard {
+                    record_loss::<P>(receiver, frame, cause, recorder);
+                }
+            }
         });
-        if is_status && let Some(trace) = recorder.trace_of(sender) {
-            for arrival in &self.arrivals {
-                trace.fate(frame.sequence, arrival.receiver, CopyFate::Arrives(arrival.at));
+        if let Some(trace) = recorder.trace_of(sender) {
+            let is_status = |frame: &&Frame<P::Message>| P::STATUS == Some(P::topic(&frame.message));
+            for frame in self.aboard.iter().filter(is_status) {
+                for arrival in &self.arrivals {
+                    trace.fate(frame.sequence, arrival.receiver, CopyFate::Arrives(arrival.at));
+                }
             }
         }
         for arrival in self.arrivals.drain(..) {
             if self.tell_reached {
                 self.reached.push(arrival.receiver);
             }
-            self.inboxes[arrival.receiver.index()].push(Reception {
-                at: arrival.at,
-                frame: frame.clone(),
-                displacement: arrival.displacement,
-            });
+            let inbox = &mut self.inboxes[arrival.receiver.index()];
+            for frame in &self.aboard {
+                inbox.push(Reception {
+                    at: arrival.at,
+                    frame: frame.clone(),
+                    displacement: arrival.displacement,
+                });
+            }
         }
-        Ok(())
+        self.aboard.clear();
     }
 
-    /// Finds the listeners that `frame` reaches in spite of the faults of links; the other copies are lost.
-    fn hinder(&mut self, frame: &Frame<P::Message>, faults: &Faults, recorder: &mut Recorder) {
+    /// Finds the listeners that the frame reaches in spite of the faults of links; the other copies are lost.
+    fn hinder(&mut self, sender: ActorId, faults: &Faults, recorder: &mut Recorder) {
         self.reachable.clear();
+        let number = self.medium.upcoming(sender);
         for (listener, &loss) in self.listeners.iter().zip(&self.hindrances) {
-            if faults.stops(loss, frame.sender, listener.id, frame.sequence) {
-                record_loss::<P>(listener.id, frame, LossCause::LinkFault, recorder);
+            if faults.stops(loss, sender, listener.id, number) {
+                for frame in &self.aboard {
+                    record_loss::<P>(listener.id, frame, LossCause::LinkFault, recorder);
+                }
             } else {
                 self.reachable.push(*listener);
             }
@@ -283,7 +322,7 @@ impl<P: Protocol> Air<P> {
 
 fn record_loss<P: Protocol>(receiver: ActorId, frame: &Frame<P::Message>, cause: LossCause, recorder: &mut Recorder) {
     let topic = P::topic(&frame.message);
-    recorder.lost(receiver, topic, cause, frame.payload_bytes);
+    recorder.lost(receiver, topic, cause, frame.size);
     if P::STATUS == Some(topic) {
         recorder.status_lost(receiver, frame.sender, frame.sequence, cause);
     }
@@ -294,7 +333,7 @@ fn record_delivery<P: Protocol>(receiver: ActorId, reception: &Reception<P::Mess
     recorder.delivered(
         receiver,
         P::topic(&frame.message),
-        frame.payload_bytes,
+        frame.size,
         reception.at.since(frame.sent_at),
     );
 }

@@ -14,6 +14,14 @@ pub enum RunError {
         /// The message's topic.
         topic: Topic,
     },
+    /// A message is longer than a frame can hold.
+    #[error("a message of {bytes} bytes on topic {} is too long: a frame holds at most 65535", topic.0)]
+    TooLong {
+        /// The message's topic.
+        topic: Topic,
+        /// The length of its payload.
+        bytes: usize,
+    },
     /// The operating system refused the robots' runtime what it needs.
     #[error("the robots cannot be started: {0}")]
     Runtime(#[source] std::io::Error),

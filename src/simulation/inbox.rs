@@ -70,7 +70,7 @@ mod tests {
 
     use super::*;
     use crate::engine::ActorId;
-    use crate::protocol::Frame;
+    use crate::protocol::{Frame, MessageSize};
 
     fn reception(at: u64, sender: u32, sequence: u32) -> Reception<()> {
         Reception {
@@ -79,7 +79,7 @@ mod tests {
                 sender: ActorId(sender),
                 sequence,
                 sent_at: SimTime::ZERO,
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: (),
             },
             displacement: [0.0; 2],

@@ -11,7 +11,7 @@ use super::run::{Rhythm, Run};
 use crate::engine::{ActorId, Actors, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
 use crate::geometry::Pose;
-use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, TrialRecord};
+use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, PhaseConfig, WakeConfig};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
@@ -59,6 +59,8 @@ pub struct Setup {
     pub control: ControlConfig,
     /// The radio.
     pub radio: RadioConfig,
+    /// Whether all messages of a wake go out in one frame.
+    pub piggyback: bool,
     /// How robots and links fail.
     pub faults: Vec<FaultConfig>,
     /// What is measured.
@@ -71,6 +73,8 @@ pub struct Setup {
     pub trace: Option<ActorId>,
     /// What counts as completion, if anything does.
     pub mission: Option<Mission>,
+    /// How many rumours all robots are to know, which then is completion; 0 for none.
+    pub rumors: usize,
 }
 
 impl Setup {
@@ -128,6 +132,7 @@ impl Setup {
         let air = Air::<P>::new(
             Medium::new(&self.radio, &streams, robots),
             robots,
+            self.piggyback,
             rhythm.wake_on_reception,
         );
         let recorder = Recorder::new(self.layout::<P>(robots), &self.metrics);
@@ -142,7 +147,7 @@ impl Setup {
             sample_interval: Span::from_secs(self.metrics.sample_interval.get()),
             time_limit: SimTime::ZERO + self.time_limit,
             wake_on_reception: self.control.wake == WakeConfig::OnReception,
-            has_mission: self.mission.is_some(),
+            has_mission: self.mission.is_some() || self.rumors > 0,
         }
     }
 
@@ -155,10 +160,14 @@ impl Setup {
             robots,
             topics: P::topics(&self.detector).len(),
             roles: P::ROLES.len(),
-            header_bytes: self.radio.header_bytes,
+            headers: HeaderBytes {
+                frame: self.radio.frame_header_bytes,
+                message: self.radio.message_header_bytes,
+            },
             radio_range: self.radio.range.get(),
             control_period: Span::from_secs(self.control.period.get()),
             mission: self.mission.clone(),
+            rumors: self.rumors,
             // A status may be that much older than the silence that it began, when its latency is long.
             status_memory: self.detector.longest_silence(circumstances) * 2,
             trace: self.trace,

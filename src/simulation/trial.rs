@@ -7,12 +7,15 @@ use tokio_util::sync::CancellationToken;
 
 use super::error::RunError;
 use super::setup::{DriverKind, Setup};
-use crate::engine::{ActorId, Span};
+use crate::engine::{ActorId, Span, Streams};
+use crate::geometry::Vec2;
 use crate::metrics::{Mission, MissionTarget, TrialRecord};
 use crate::motion::{DeployError, deploy};
 use crate::protocol::backbone::{self, BackboneConfig};
 use crate::protocol::detector::Probe;
 use crate::protocol::heartbeat::{Heartbeat, Settings};
+use crate::protocol::rumor;
+use crate::protocol::wander::Ground;
 use crate::scenario::{ProtocolConfig, Scenario};
 
 /// Why a trial has no record.
@@ -74,14 +77,16 @@ fn run(
         &setup.streams(),
     )?;
     let period = Span::from_secs(scenario.control.period.get());
+    let streams = setup.streams();
     let record = match &scenario.protocol {
         ProtocolConfig::Backbone(config) => {
-            let robots = backbone::swarm(config, &scenario.gossip, &scenario.detector, period, &poses);
+            let robots = backbone::swarm(config, &scenario.gossip, &scenario.detector, period, &poses, streams);
             setup.mission = robots.first().map(|robot| mission(config, robot.root()));
             setup.run(poses, robots, driver, stop)
         }
         ProtocolConfig::Heartbeat => {
-            let settings = Rc::new(Settings::new(&scenario.gossip, &scenario.detector, period, poses.len()));
+            let settings = Settings::new(&scenario.gossip, &scenario.detector, period, poses.len(), streams);
+            let settings = Rc::new(settings.wandering(ground(scenario, streams)));
             if scenario.detector.sends() {
                 let robots = heartbeats::<Rc<Probe>>(swarm.robots, &settings);
                 setup.run(poses, robots, driver, stop)
@@ -90,8 +95,22 @@ fn run(
                 setup.run(poses, robots, driver, stop)
             }
         }
+        ProtocolConfig::Rumor(config) => {
+            let ground = ground(scenario, streams);
+            let robots = rumor::swarm(config, &scenario.gossip, period, swarm.robots, ground, streams);
+            setup.rumors = config.sources.rumors();
+            setup.run(poses, robots, driver, stop)
+        }
     }?;
     Ok(record)
+}
+
+/// Where robots of a protocol without a motion of its own go: a body's width of the walls is left to them.
+fn ground(scenario: &Scenario, streams: Streams) -> Ground {
+    let (width, height) = &scenario.arena.size;
+    let margin = 2.0 * scenario.motion.body_radius.get();
+    let half = [width, height].map(|size| (size.get() / 2.0 - margin).max(0.0));
+    Ground::new(scenario.wander, Vec2::new(half[0], half[1]), streams)
 }
 
 /// Robots whose messages carry what their detectors say by `P`.
@@ -109,12 +128,14 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         motion: scenario.motion.clone(),
         control: scenario.control.clone(),
         radio: scenario.radio.clone(),
+        piggyback: scenario.gossip.piggyback,
         faults: scenario.faults.clone(),
         metrics: scenario.metrics.clone(),
         detector: scenario.detector.clone(),
         status_interval: scenario.circumstances().status_interval,
         trace: None,
         mission: None,
+        rumors: 0,
     }
 }
 

@@ -88,6 +88,31 @@ fn what_is_told_of_each_robot_adds_up_to_the_table_and_to_the_ledger() {
     );
 }
 
+/// Statuses take 0.25 s. Those of robot 0 that are sent from 1 s to 1.4 s are lost, so the last one arrives at 1.15 s and it is
+/// suspected at 1.5 s, with the one of 1.4 s under way. Robot 1 is deaf when that arrives.
+#[test]
+fn a_status_under_way_at_a_suspicion_is_so_told_though_it_was_lost_on_its_arrival() {
+    let scenario = scenario(
+        "radio: (latency: Constant(0.25)), faults: [
+            Burst(links: Of([0]), loss: 1.0, during: Between(0.95, 1.35)), Deaf(robots: [1], at: 1.6, lasts: For(1.0))]",
+    );
+    let (record, explanation) = traced(&scenario, 0);
+    let missed = &record.detection.suspicions[0].missed;
+    assert_eq!((missed.lost[LossCause::LinkFault as usize], missed.under_way), (4, 1));
+    let told = &explanation.suspicions[0];
+    assert_eq!((told.observer, told.suspected_s), (1, 1.5));
+    let under_way = Fate::UnderWay {
+        arrives_s: 1.65,
+        lost: Some(LossCause::ReceiverDown.name()),
+    };
+    assert_eq!(told.statuses.last().map(|status| status.fate), Some(under_way));
+    let text = explanation.text(None);
+    assert!(
+        text.contains("under way until 1.650 s, then lost: the receiver was down"),
+        "{text}"
+    );
+}
+
 #[test]
 fn whoever_is_followed_the_run_is_the_same() {
     let scenario = scenario(LOSSY);
@@ -213,7 +238,8 @@ fn the_command_explains_finished_results_and_refuses_all_others() {
 #[test]
 fn a_suspicion_by_probes_is_told_as_one() {
     let dir = tempdir().unwrap();
-    let text = text("faults: [Deaf(robots: [1], at: 3.0)]").replace("Timeout(0.35)", "Swim(suspicion_mult: 0.0)");
+    let text = text("faults: [Deaf(robots: [1], at: 3.0)]")
+        .replace("Timeout(0.35)", "Swim(suspicion_mult: 0.0, probe_interval: 1.5)");
     fs::write(dir.path().join("still.ron"), text).unwrap();
     desim(dir.path(), &["scenario", "still.ron", "--quiet", "--out", "there"]).success();
     let told = desim(dir.path(), &["explain", "there", "--trial", "0", "--robot", "1"]).success();

@@ -11,7 +11,7 @@ use desim::geometry::{Pose, Vec2};
 use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
 use desim::metrics::{
     ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotBytes, RobotState,
-    SeriesEntry, TopicFates, TrafficRow, TrialRecord, Volume,
+    RumorSpread, SeriesEntry, TopicFates, TrafficRow, TrialRecord, Volume,
 };
 use desim::radio::LossCause;
 use desim::scenario::{Scenario, parse};
@@ -57,6 +57,7 @@ pub fn record(trial: u32) -> TrialRecord {
         latency,
         faults: faults(trial),
         healing: healing(trial),
+        spread: spread(trial),
         detection: detection(trial),
         trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
@@ -137,6 +138,7 @@ fn traffic(robot: u32, topic: u8, trial: u32) -> TrafficRow {
         topic,
         sent: volume(600),
         received: volume(u64::from(4000 + 10 * robot + trial)),
+        duplicate: volume(u64::from(topic) * u64::from(7 + robot + trial)),
         lost: [robot, 0, robot % 2].map(|frames| volume(frames.into())),
     }
 }
@@ -185,6 +187,22 @@ fn healing(trial: u32) -> Vec<HealingEpisode> {
     } else {
         Vec::new()
     }
+}
+
+/// Two rumours, of which the second does not reach the last robot in the first trial.
+fn spread(trial: u32) -> Vec<RumorSpread> {
+    let at = |rumor: u32, robot: u32| SimTime::from_secs(f64::from(robot * (rumor + 3) + trial) / 7.0);
+    let reaches = |rumor, robot| trial > 0 || rumor == 0 || robot + 1 < ROBOTS;
+    let informed = |rumor| {
+        (0..ROBOTS)
+            .map(|robot| reaches(rumor, robot).then(|| at(rumor, robot)))
+            .collect()
+    };
+    (0..2)
+        .map(|rumor| RumorSpread {
+            informed: informed(rumor),
+        })
+        .collect()
 }
 
 fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {

@@ -85,6 +85,7 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
         "latency.parquet",
         "robots.parquet",
         "series.parquet",
+        "spread.parquet",
         "summary.json",
         "trajectories.parquet",
         "trajectories_0.svg",

@@ -1,6 +1,10 @@
-//! What `desim scenario` leaves behind: the results folder, its resumption, its refusals, its report, its exit status.
+//! What `desim scenario` leaves behind: the results folder, its resumption, its refusals, its report, its exit status. All of it
+//! is about folders with their tables, which a build without Parquet does not write.
+
+#![cfg(feature = "parquet")]
 
 mod command;
+mod documentation;
 mod explain;
 mod fixture;
 mod folder;

@@ -211,7 +211,7 @@ fn results_that_do_not_belong_together_are_refused_with_the_difference() {
         refusal(
             |scenario| {
                 scenario.seed = 2;
-                scenario.radio.header_bytes = 9;
+                scenario.radio.frame_header_bytes = 9;
                 scenario.name = "other".to_owned();
             },
             None,

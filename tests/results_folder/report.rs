@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use desim::metrics::{Outcome, Summary, TrialRecord};
+use desim::metrics::{Estimate, Outcome, Summary, TrialRecord};
+use desim::predict::{Holds, Prediction, Surprise};
 use desim::report::{Input, Speed, terminal};
 
 use crate::fixture::record;
@@ -11,12 +12,17 @@ const TOPICS: [&str; 4] = ["status", "request", "parent strand", "child strand"]
 const ROLES: [&str; 4] = ["free", "root", "networker", "worker"];
 
 fn report(records: &[TrialRecord], colour: bool) -> String {
+    report_with(records, &[], colour)
+}
+
+fn report_with(records: &[TrialRecord], surprises: &[Surprise], colour: bool) -> String {
     terminal(&Input {
         question: Some(
             "Does the backbone still reach its targets when one frame in five is lost on its way to a robot?",
         ),
         summary: &Summary::of("loss20", &TOPICS, &ROLES, records),
         control_period_s: 0.1,
+        surprises,
         speed: Speed {
             simulated_s: 2100.0,
             delivered: 1_250_000,
@@ -50,6 +56,40 @@ fn the_report_without_a_mission_speaks_of_none() {
         ..record
     });
     insta::assert_snapshot!(report(&still.collect::<Vec<_>>(), false));
+}
+
+#[test]
+fn what_is_not_as_predicted_has_a_section_of_its_own() {
+    let surprise = |name, what, unit, value: f64| Surprise {
+        predicted: Prediction {
+            name,
+            what,
+            value,
+            unit,
+            accuracy: 0.0,
+            holds: Holds::Throughout,
+            formula: "p",
+            assumes: "the channel alone".into(),
+        },
+        measured: Estimate {
+            value: Some(1.25 * value),
+            ci95: [Some(1.24 * value), Some(1.26 * value)],
+            n: 35,
+        },
+        why: "copies were lost beside the channel (link fault 5.00 %)".into(),
+    };
+    let surprises = [
+        surprise("loss_ratio", "copies lost", "1", 0.2),
+        surprise("status_rx_bytes_per_step", "status bytes received", "B/step", 280.0),
+        surprise("mistake_duration_s", "duration of a mistake", "s", 0.75),
+    ];
+    let report = report_with(&records(3), &surprises, false);
+    let section = report
+        .split("\nNot as predicted")
+        .nth(1)
+        .and_then(|rest| rest.split("\nRun\n").next());
+    insta::assert_snapshot!(section.unwrap());
+    assert!(report.lines().all(|line| line.chars().count() <= 80), "{report}");
 }
 
 #[test]

@@ -43,7 +43,7 @@ pub struct Records<'a> {
 pub type Fill = fn(&mut Records, &Table) -> Result<(), Wrong>;
 
 /// The tables and what is read of them, the trials first. Paths are the bulk of a result and no report needs them.
-pub const TABLES: [(&str, Fill); 10] = [
+pub const TABLES: [(&str, Fill); 11] = [
     ("trials.parquet", trials),
     ("frames.parquet", traffic::frames),
     ("bandwidth.parquet", traffic::bandwidth),
@@ -54,6 +54,7 @@ pub const TABLES: [(&str, Fill); 10] = [
     ("detection.parquet", failures::detection),
     ("faults.parquet", failures::faults),
     ("healing.parquet", failures::healing),
+    ("spread.parquet", traffic::spread),
 ];
 
 impl<'a> Records<'a> {
@@ -112,6 +113,7 @@ fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             },
             faults: Vec::new(),
             healing: Vec::new(),
+            spread: Vec::new(),
             connectivity: Vec::new(),
             series: Vec::new(),
             robots: Vec::new(),

@@ -3,7 +3,7 @@
 use super::records::Records;
 use super::table::{Table, Wrong};
 use crate::engine::{ActorId, SimTime};
-use crate::metrics::{RobotBytes, SeriesEntry, TopicFates, TrafficRow, Volume};
+use crate::metrics::{RobotBytes, RumorSpread, SeriesEntry, TopicFates, TrafficRow, Volume};
 use crate::radio::LossCause;
 
 pub fn frames(records: &mut Records, table: &Table) -> Result<(), Wrong> {
@@ -45,6 +45,7 @@ pub fn bandwidth(records: &mut Records, table: &Table) -> Result<(), Wrong> {
                 topic,
                 sent: Volume::default(),
                 received: Volume::default(),
+                duplicate: Volume::default(),
                 lost: Default::default(),
             });
         }
@@ -68,9 +69,26 @@ fn way<'a>(row: &'a mut TrafficRow, name: &str) -> Result<&'a mut Volume, Wrong>
     match (name, cause) {
         ("tx", _) => Ok(&mut row.sent),
         ("rx", _) => Ok(&mut row.received),
+        ("duplicate", _) => Ok(&mut row.duplicate),
         (_, Some(cause)) => Ok(&mut row.lost[cause]),
         (other, None) => Err(format!("it has rows of an unknown direction `{other}`")),
     }
+}
+
+pub fn spread(records: &mut Records, table: &Table) -> Result<(), Wrong> {
+    let (trial, rumor) = (table.ids("trial")?, table.ids("rumor")?);
+    let informed = table.optional_numbers("informed_s")?;
+    for row in 0..trial.len() {
+        let rumors = &mut records.of(trial[row])?.spread;
+        // Rows of one rumour follow each other, robot by robot.
+        if rumors.len() <= rumor[row] as usize {
+            rumors.push(RumorSpread::default());
+        }
+        if let Some(last) = rumors.last_mut() {
+            last.informed.push(informed[row].map(SimTime::from_secs));
+        }
+    }
+    Ok(())
 }
 
 pub fn latency(records: &mut Records, table: &Table) -> Result<(), Wrong> {

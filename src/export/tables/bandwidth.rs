@@ -30,13 +30,14 @@ pub fn rows(record: &TrialRecord, names: &Names) -> impl Iterator<Item = Row> {
     })
 }
 
-/// The directions in which there was traffic: `tx`, `rx`, `lost_<cause>`.
+/// The directions in which there was traffic: `tx`, `rx`, `lost_<cause>`, `duplicate`.
 fn directions(traffic: &TrafficRow) -> impl Iterator<Item = (Cow<'static, str>, Volume)> {
     let lost = LossCause::ALL.iter().zip(traffic.lost);
     let lost = lost.map(|(cause, volume)| (Cow::Owned(format!("lost_{}", cause.name())), volume));
     [("tx".into(), traffic.sent), ("rx".into(), traffic.received)]
         .into_iter()
         .chain(lost)
+        .chain([("duplicate".into(), traffic.duplicate)])
         .filter(|(_, volume)| volume.frames > 0)
 }
 

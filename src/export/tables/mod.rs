@@ -9,6 +9,7 @@ mod healing;
 mod latency;
 mod robots;
 mod series;
+mod spread;
 mod trajectories;
 mod trials;
 
@@ -32,12 +33,13 @@ pub struct Tables {
     trajectories: Table<trajectories::Row>,
     faults: Table<faults::Row>,
     healing: Table<healing::Row>,
+    spread: Table<spread::Row>,
     series: Table<series::Row>,
 }
 
 impl Tables {
     /// Names of the files.
-    pub const FILES: [&str; 11] = [
+    pub const FILES: [&str; 12] = [
         "trials.parquet",
         "frames.parquet",
         "bandwidth.parquet",
@@ -49,6 +51,7 @@ impl Tables {
         "healing.parquet",
         "detection.parquet",
         "series.parquet",
+        "spread.parquet",
     ];
 
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
@@ -69,6 +72,7 @@ impl Tables {
             faults: Table::create(&path(7), faults::columns())?,
             healing: Table::create(&path(8), healing::columns(&names))?,
             detection: Table::create(&path(9), detection::columns())?,
+            spread: Table::create(&path(11), spread::columns())?,
             series: Table::create(&path(10), series::columns())?,
         })
     }
@@ -88,6 +92,7 @@ impl Tables {
         self.trajectories.extend(trajectories::rows(record))?;
         self.faults.extend(faults::rows(record, &self.names))?;
         self.healing.extend(healing::rows(record, &self.names))?;
+        self.spread.extend(spread::rows(record))?;
         self.series.extend(series::rows(record, &self.names))
     }
 
@@ -106,6 +111,7 @@ impl Tables {
         self.trajectories.finish()?;
         self.faults.finish()?;
         self.healing.finish()?;
+        self.spread.finish()?;
         self.series.finish()
     }
 }

@@ -156,7 +156,7 @@ fn is_newer(a: u32, b: u32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::protocol::Frame;
+    use crate::protocol::{Frame, MessageSize};
 
     const OBSERVER: ActorId = ActorId(0);
     const SUBJECT: ActorId = ActorId(1);
@@ -172,7 +172,7 @@ mod tests {
                 sender: SUBJECT,
                 sequence,
                 sent_at: at(0.0),
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: (),
             },
             displacement: [0.0; 2],

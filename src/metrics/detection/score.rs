@@ -106,7 +106,7 @@ impl Scorer {
                 self.suspect(suspicion);
             }
             Note::Trusts(subject) => self.trust(now, observer, subject),
-            Note::Role(_) | Note::Target(_) | Note::Parents(_) => {}
+            Note::Duplicate { .. } | Note::Informed { .. } | Note::Role(_) | Note::Target(_) | Note::Parents(_) => {}
         }
     }
 

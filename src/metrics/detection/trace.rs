@@ -30,13 +30,15 @@ pub struct Status {
 pub struct Copy {
     /// For whom.
     pub receiver: ActorId,
-    /// What became of it on its way.
+    /// What became of it in the end.
     pub fate: CopyFate,
+    /// When it arrived or was to arrive, heard or not; `None` if it was lost on its way.
+    pub due: Option<SimTime>,
     /// When its receiver read it.
     pub read: Option<SimTime>,
 }
 
-/// What became of a copy on its way.
+/// What became of a copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CopyFate {
     /// It arrived then, or will.
@@ -87,6 +89,10 @@ impl StatusTrace {
             None => status.copies.push(Copy {
                 receiver,
                 fate,
+                due: match fate {
+                    CopyFate::Arrives(at) => Some(at),
+                    CopyFate::Lost(_) => None,
+                },
                 read: None,
             }),
         }

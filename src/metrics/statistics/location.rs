@@ -92,22 +92,61 @@ pub fn proportion(successes: u64, trials: u64) -> Estimate {
     if trials == 0 {
         return Estimate::default();
     }
-    let (n, share, z) = (trials as f64, successes as f64 / trials as f64, normal_quantile());
+    let share = successes as f64 / trials as f64;
+    Estimate {
+        value: Some(share),
+        ci95: wilson(share, trials as f64, normal_quantile()).map(Some),
+        n: trials,
+    }
+}
+
+/// The mean of `shares`, one a trial, each from 0 to 1, with an interval that stays there too. It is Wilson's at the
+/// effective number of trials m(1−m)/(s²/n) and Student's quantile (Korn and Graubard, 1998, with Wilson's interval for
+/// theirs): shares that differ less than all or nothing say more than so many yeses and noes. Where every trial has 0 or every
+/// trial 1, their spread says nothing, and they count as yeses and noes. No interval from fewer than two.
+#[must_use]
+pub fn share(shares: &[f64]) -> Estimate {
+    let estimate = mean(shares);
+    let n = shares.len() as f64;
+    let interval = |mean: f64| {
+        let student = StudentsT::new(0.0, 1.0, n - 1.0).ok()?;
+        let squares: f64 = shares.iter().map(|share| (share - mean).powi(2)).sum();
+        let squared_error = squares / (n - 1.0) / n;
+        Some(if mean <= 0.0 || mean >= 1.0 {
+            wilson(mean, n, normal_quantile())
+        } else if squared_error > 0.0 {
+            wilson(
+                mean,
+                mean * (1.0 - mean) / squared_error,
+                student.inverse_cdf(1.0 - TAIL),
+            )
+        } else {
+            [mean; 2]
+        })
+    };
+    Estimate {
+        ci95: estimate
+            .value
+            .and_then(interval)
+            .map_or([None; 2], |ends| ends.map(Some)),
+        ..estimate
+    }
+}
+
+/// Wilson's score interval for a `share` of `n` at the quantile `z`.
+fn wilson(share: f64, n: f64, z: f64) -> [f64; 2] {
     let centre = (share + z * z / (2.0 * n)) / (1.0 + z * z / n);
     let half_width = z / (1.0 + z * z / n) * (share * (1.0 - share) / n + z * z / (4.0 * n * n)).sqrt();
     // At the extremes the end is exactly 0 or 1; rounding must not carry it past.
-    let low = if successes == 0 { 0.0 } else { centre - half_width };
-    let high = if successes == trials { 1.0 } else { centre + half_width };
-    Estimate {
-        value: Some(share),
-        ci95: [Some(low), Some(high)],
-        n: trials,
-    }
+    let low = if share <= 0.0 { 0.0 } else { centre - half_width };
+    let high = if share >= 1.0 { 1.0 } else { centre + half_width };
+    [low.max(0.0), high.min(1.0)]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn assert_interval(estimate: Estimate, low: f64, high: f64) {
         let [Some(a), Some(b)] = estimate.ci95 else {
@@ -205,5 +244,35 @@ mod tests {
         assert_interval(proportion(7, 10), 0.396_778_147_461_145_26, 0.892_208_732_593_699);
         assert_interval(proportion(33, 35), 0.813_929_425_798_350_7, 0.984_186_838_142_891_3);
         assert_interval(proportion(1, 2), 0.094_531_205_734_230_74, 0.905_468_794_265_769_3);
+    }
+
+    #[test]
+    fn shares_have_an_interval_within_0_and_1_that_is_wilsons_at_the_effective_number_of_trials() {
+        // m = 0.99, s²/n = 0.01²: n_e = 99, t = scipy.stats.t.ppf(0.975, 3); statsmodels' proportion_confint(0.99·99, 99,
+        // method="wilson") with t for z.
+        let found = share(&[1.0, 1.0, 1.0, 0.96]);
+        let t: f64 = 3.182_446_305_284_263;
+        let (m, n) = (0.99, 99.0);
+        let centre = (m + t * t / (2.0 * n)) / (1.0 + t * t / n);
+        let half = t / (1.0 + t * t / n) * (m * (1.0 - m) / n + t * t / (4.0 * n * n)).sqrt();
+        assert_interval(found, centre - half, centre + half);
+        assert!(found.ci95[1] < Some(1.0) && mean(&[1.0, 1.0, 1.0, 0.96]).ci95[1] > Some(1.0));
+    }
+
+    #[test]
+    fn shares_that_are_all_or_nothing_are_a_proportion_and_equal_ones_their_own_mean() {
+        assert_eq!(share(&[1.0; 35]), proportion(35, 35));
+        assert_eq!(share(&[0.0; 7]), proportion(0, 7));
+        assert_eq!(share(&[0.25; 7]).ci95, [Some(0.25); 2]);
+        assert_eq!(share(&[1.0]).ci95, [None; 2]);
+        assert_eq!(share(&[]), Estimate::default());
+    }
+
+    proptest! {
+        #[test]
+        fn an_interval_of_shares_holds_their_mean_and_stays_within_0_and_1(shares in prop::collection::vec(0.0..=1.0_f64, 2..40)) {
+            let Estimate { value: Some(mean), ci95: [Some(low), Some(high)], .. } = share(&shares) else { panic!() };
+            prop_assert!(0.0 <= low && low <= mean + 1e-12 && mean - 1e-12 <= high && high <= 1.0);
+        }
     }
 }

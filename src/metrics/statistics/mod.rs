@@ -12,7 +12,7 @@ mod survival;
 
 pub use bootstrap::Resamples;
 pub use family::{POWER, holm, trials_needed};
-pub use location::{mean, median, proportion, ratio};
+pub use location::{mean, median, proportion, ratio, share};
 pub use permutation::{Part, paired_permutation, ratio_of_sums};
 pub use ranks::{cliffs_delta, mann_whitney, wilcoxon};
 pub use spread::{gini, quantile};

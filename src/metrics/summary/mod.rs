@@ -7,12 +7,14 @@ pub(super) mod detection;
 pub(super) mod faults;
 pub(super) mod frames;
 mod quantity;
+mod spread;
 
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
 pub use detection::{Detection, Failures, Suspicions};
 pub use faults::{FaultSummary, Healed, HealingSummary, HealingTime};
 pub use frames::{Fates, Frames};
 pub use quantity::{Measured, Named, Quantity, Unit};
+pub use spread::{Duplicates, SpreadSummary, SpreadTime};
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
@@ -21,7 +23,7 @@ use crate::engine::Span;
 
 use super::latency::LatencyHistogram;
 use super::record::{Outcome, TrialRecord};
-use super::statistics::{Estimate, Observation, mean, median, median_survival, proportion};
+use super::statistics::{Estimate, Observation, mean, median, median_survival, proportion, share};
 pub(super) use quantity::DIMENSIONLESS;
 
 pub(super) const STEPS: &str = "control steps";
@@ -54,7 +56,7 @@ pub struct Summary {
     pub load_imbalance: LoadImbalance,
     /// The least λ₂ of a trial's samples.
     pub lambda2_min: LeastConnectivity,
-    /// Share of a trial's samples in which the swarm is in one piece: mean over trials.
+    /// Share of a trial's samples in which the swarm is in one piece: mean over trials, its interval within 0 and 1.
     pub connected_share: Measured,
     /// Robots that a mission took, those that ended in another role than the first: mean over trials.
     pub robots_used: Measured,
@@ -64,6 +66,12 @@ pub struct Summary {
     /// How targets got their links back; absent if no robot failed that worked for one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub healing: Option<HealingSummary>,
+    /// How rumours spread; absent where there were none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spread: Option<SpreadSummary>,
+    /// What was heard in vain; absent where the protocol names nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duplicates: Option<Duplicates>,
     /// Failure detection, against the truth.
     pub detection: Detection,
     /// Control steps simulated, over all trials.
@@ -134,13 +142,15 @@ impl Summary {
             bandwidth: Bandwidth::of(topics, roles, records),
             load_imbalance: LoadImbalance::of(records),
             lambda2_min: LeastConnectivity::of(records),
-            connected_share: ratio(mean_over_trials(records, TrialRecord::connected_share)),
+            connected_share: ratio(connected_share(records)),
             robots_used: Measured {
                 estimate: mean_over_trials(records, |record| record.robots_used().map(|robots| robots as f64)),
                 unit: "robots".into(),
             },
             faults: FaultSummary::of(roles, records),
             healing: HealingSummary::of(topics, roles, records),
+            spread: SpreadSummary::of(records),
+            duplicates: Duplicates::of(topics, records),
             detection: Detection::of(records),
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
@@ -164,6 +174,11 @@ fn ratio(estimate: Estimate) -> Measured {
 /// The mean of a figure over the trials that have it.
 fn mean_over_trials(records: &[TrialRecord], figure: impl Fn(&TrialRecord) -> Option<f64>) -> Estimate {
     mean(&records.iter().filter_map(figure).collect::<Vec<f64>>())
+}
+
+fn connected_share(records: &[TrialRecord]) -> Estimate {
+    let shares: Vec<f64> = records.iter().filter_map(TrialRecord::connected_share).collect();
+    share(&shares)
 }
 
 /// XXH3-128 of the trials' digests, each as 16 bytes, least significant first.

@@ -4,8 +4,8 @@ use super::*;
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::{Pose, Vec2};
 use crate::metrics::detection::{Cause, DetectionRecord, Missed, Suspicion};
-use crate::metrics::{Layout, MetricsConfig, Mission, Recorder, RunEnd};
-use crate::protocol::{Note, Role, Topic};
+use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RunEnd};
+use crate::protocol::{MessageSize, Note, Role, Topic};
 use crate::radio::LossCause;
 
 const TOPICS: [&str; 2] = ["status", "alarm"];
@@ -18,7 +18,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
         robots: 2,
         topics: 2,
         roles: 2,
-        header_bytes: 5,
+        headers: HeaderBytes { frame: 2, message: 3 },
         radio_range: 2.0,
         control_period: Span::from_secs(0.1),
         mission: Some(Mission {
@@ -28,21 +28,22 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
             root: ActorId(0),
             worker_role: Role(1),
         }),
+        rumors: 0,
         status_memory: Span::from_secs(8.0),
         trace: None,
     };
     let mut recorder = Recorder::new(layout, &MetricsConfig::default());
     for frame in 0..10 {
-        recorder.transmitted(ActorId(0), Topic(0), 4);
+        recorder.transmitted(ActorId(0), Topic(0), MessageSize::alone(4));
         recorder.offered(Topic(0), 1);
         if frame < heard {
-            recorder.delivered(ActorId(1), Topic(0), 4, Span::from_secs(0.02));
+            recorder.delivered(ActorId(1), Topic(0), MessageSize::alone(4), Span::from_secs(0.02));
         } else {
-            recorder.lost(ActorId(1), Topic(0), LossCause::Channel, 4);
+            recorder.lost(ActorId(1), Topic(0), LossCause::Channel, MessageSize::alone(4));
         }
     }
     recorder.note(ActorId(1), &Note::Role(Role(1)));
-    recorder.transmitted(ActorId(1), Topic(1), 15);
+    recorder.transmitted(ActorId(1), Topic(1), MessageSize::alone(15));
     recorder.offered(Topic(1), 1);
     recorder.in_flight(Topic(1));
     recorder.sample(SimTime::ZERO, &[Vec2::zeros(), Vec2::new(1.0, 0.0)]);

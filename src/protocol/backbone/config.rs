@@ -204,6 +204,7 @@ pub enum TargetsConfig {
         /// Their distance from the centre, metres.
         radius: Positive,
         /// Links that each needs, at least 1.
+        #[schemars(range(min = 1))]
         #[serde(default = "one_link")]
         links: u8,
     },
@@ -218,6 +219,7 @@ pub struct TargetConfig {
     /// Place in metres from the centre.
     pub at: (Finite, Finite),
     /// Links that it needs, at least 1.
+    #[schemars(range(min = 1))]
     #[serde(default = "one_link")]
     pub links: u8,
 }
@@ -242,6 +244,24 @@ impl BackboneConfig {
                 .map(|target| (Vec2::new(target.at.0.get(), target.at.1.get()), target.links))
                 .collect(),
         }
+    }
+
+    /// The fewest robots that a mission takes: a root, a worker for each target, and for each of its links as many relays as the
+    /// distance asks for.
+    #[must_use]
+    pub fn robots_needed(&self) -> usize {
+        let of_target = |(at, links): (Vec2, u8)| 1 + usize::from(links) * self.relays(at.norm());
+        1 + self.targets().into_iter().map(of_target).sum::<usize>()
+    }
+
+    /// Robots of the longest chain that the targets need, the worker among them, seen from the centre.
+    #[must_use]
+    pub fn longest_chain(&self) -> usize {
+        let relays = |(place, links): (Vec2, u8)| {
+            let (threshold, safe) = (self.movement_threshold.get(), self.safe_distance.get());
+            relays_needed(place.norm(), threshold, safe).max(usize::from(links > 1))
+        };
+        self.targets().into_iter().map(relays).max().unwrap_or(0) + 1
     }
 
     /// What is wrong with these settings together, for `robots` robots that hear each other up to `radio_range` metres:
@@ -351,6 +371,11 @@ mod tests {
             assert!((at - Vec2::new(x, y)).norm() < 1e-12);
             assert_eq!(links, 2);
         }
+    }
+
+    #[test]
+    fn four_targets_with_two_relays_a_link_need_a_root_four_workers_and_eight_relays_a_link() {
+        assert_eq!([1, 2, 4].map(|links| ring(4, links).robots_needed()), [13, 21, 37]);
     }
 
     #[test]

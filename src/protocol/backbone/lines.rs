@@ -49,7 +49,8 @@ impl Lines {
                 line.robots.pop();
                 line.cut = true;
             }
-            if view.step - line.heard > view.parameters().healing_patience {
+            let parameters = view.parameters();
+            if view.step - line.heard > parameters.healing_patience.min(parameters.strand_lifetime) {
                 line.robots.clear();
             }
         }

@@ -1,15 +1,17 @@
 //! What every robot is given before the start: the targets, the root, the workers, and the settings in working units.
 
-use crate::engine::{ActorId, Span};
+use crate::engine::{ActorId, Span, Streams};
 use crate::geometry::{Pose, Vec2, direction};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
-use crate::protocol::gossip::GossipConfig;
+use crate::protocol::gossip::{GossipConfig, Repetition, RetransmitConfig, TimeToLiveConfig, Turns};
 
 use super::config::BackboneConfig;
 
 /// The mission: the same for all robots, and known to all from the start (paper section 4.1).
 #[derive(Debug)]
 pub struct Mission {
+    /// How many robots there are.
+    pub robots: usize,
     /// The robot that every chain ends at.
     pub root: ActorId,
     /// Where the root stands, metres in the arena's axes.
@@ -95,9 +97,15 @@ pub struct Parameters {
     pub join_timeout: u64,
     pub shortage_patience: u64,
     pub visit: u64,
-    pub status_every: u64,
-    pub strand_every: u64,
-    pub request_every: u64,
+    pub status_turns: Turns,
+    pub status_repetition: Repetition,
+    pub strand_turns: Turns,
+    pub strand_repetition: Repetition,
+    pub request_turns: Turns,
+    pub relay_turns: Turns,
+    pub retransmit: RetransmitConfig,
+    pub strand_lifetime: u64,
+    pub hop_limit: usize,
     pub healing_patience: u64,
     pub silence_steps: u64,
     pub detector: DetectorConfig,
@@ -133,6 +141,7 @@ impl Mission {
             });
         }
         Self {
+            robots: poses.len(),
             root: ActorId(root as u32),
             origin,
             targets,
@@ -195,18 +204,19 @@ pub fn relays_needed(distance: f64, threshold: f64, safe: f64) -> usize {
 }
 
 impl Parameters {
-    /// The settings of a scenario, for robots that wake every `control_period`.
+    /// The settings of a scenario, for robots that wake every `control_period`, in a trial with these `streams`.
     #[must_use]
     pub fn new(
         config: &BackboneConfig,
         gossip: &GossipConfig,
         (detector, circumstances): (&DetectorConfig, Circumstances),
         control_period: Span,
+        streams: Streams,
     ) -> Self {
         let steps = |seconds: f64| (seconds / control_period.as_secs()).ceil() as u64;
         let law = &config.motion;
-        let strand_every = gossip.strand.steps(control_period);
-        let request_every = gossip.request.steps(control_period);
+        let strand_repetition = gossip.strand.repetition(control_period);
+        let request = gossip.request.timing(control_period);
         Self {
             safe: config.safe_distance.get(),
             gate: law.movement_gate.get(),
@@ -226,16 +236,25 @@ impl Parameters {
             stall_steps: steps(law.stall_time.get()),
             recruit_ratio: config.recruiting.distance_ratio.get(),
             // Patience counts repetitions too, so that rare gossip does not undo every join.
-            request_patience: steps(config.recruiting.patience.get()).max(REPETITIONS * request_every),
+            request_patience: steps(config.recruiting.patience.get()).max(REPETITIONS * request.longest()),
             refusal_memory: steps(config.recruiting.refusal_memory.get()),
             join_timeout: steps(config.recruiting.join_timeout.get())
-                .max(REPETITIONS * strand_every)
-                .max(REPETITIONS * request_every),
+                .max(REPETITIONS * strand_repetition.longest_pause())
+                .max(REPETITIONS * request.longest()),
             shortage_patience: steps(config.shortage.patience.get()),
             visit: steps(config.shortage.visit.get()),
-            status_every: gossip.status.steps(control_period),
-            strand_every,
-            request_every,
+            status_turns: Turns::new(gossip.status.timing(control_period), 0, streams),
+            status_repetition: gossip.status.repetition(control_period),
+            strand_turns: Turns::new(gossip.strand.timing(control_period), 2, streams),
+            strand_repetition,
+            request_turns: Turns::new(request, 1, streams),
+            relay_turns: Turns::new(gossip.relay.timing(control_period), 4, streams),
+            retransmit: gossip.relay.retransmit,
+            strand_lifetime: match gossip.strand.time_to_live {
+                TimeToLiveConfig::Unlimited => u64::MAX,
+                TimeToLiveConfig::Seconds(seconds) => steps(seconds.get()),
+            },
+            hop_limit: gossip.strand.hop_limit.into(),
             healing_patience: steps(config.healing.patience.get()),
             silence_steps: steps(detector.usual_silence(circumstances).as_secs()),
             detector: detector.clone(),
@@ -273,6 +292,7 @@ mod tests {
                 },
             ),
             Span::from_secs(0.1),
+            Streams::new(1, 0),
         );
         let poses: Vec<Pose> = poses
             .iter()

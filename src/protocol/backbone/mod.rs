@@ -43,13 +43,10 @@ use view::{Knowledge, View};
 use worker::Worker;
 
 use super::detector::{self, Circumstances, Detector, DetectorConfig};
-use super::gossip::GossipConfig;
+use super::gossip::{GossipConfig, Repeat};
 use super::{Input, Note, Output, Protocol, Reception, Topic, Wake};
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, Streams};
 use crate::geometry::{Pose, Vec2};
-
-/// Orders are repeated this many request intervals apart.
-const ORDER_REPETITION: u64 = 10;
 
 /// One robot of the backbone.
 #[derive(Debug)]
@@ -62,7 +59,28 @@ pub struct Backbone {
     sidestep: Sidestep,
     /// What arrived since the last control step and was read when the detector's timer woke the robot.
     unread: Vec<Reception<Message>>,
+    said: Said,
     told: Told,
+}
+
+/// What the robot last said, topic by topic, and what it passes on.
+#[derive(Debug, Default)]
+struct Said {
+    status: Repeat<Status>,
+    strands: Repeat<Vec<Message>>,
+    /// The order that it passes on, and how often it has.
+    order: (Order, u64),
+}
+
+impl Said {
+    /// Whether `order` is to be passed on once more, of at most `limit` times.
+    fn passes_on(&mut self, order: Order, limit: u64) -> bool {
+        if self.order.0 != order {
+            self.order = (order, 0);
+        }
+        self.order.1 += 1;
+        self.order.1 <= limit
+    }
 }
 
 /// What the metrics were last told.
@@ -85,12 +103,13 @@ pub fn swarm(
     detector: &DetectorConfig,
     control_period: Span,
     poses: &[Pose],
+    streams: Streams,
 ) -> Vec<Backbone> {
     let circumstances = Circumstances {
         robots: poses.len(),
-        status_interval: control_period * gossip.status.steps(control_period),
+        status_interval: gossip.status.longest_pause(control_period),
     };
-    let parameters = Parameters::new(config, gossip, (detector, circumstances), control_period);
+    let parameters = Parameters::new(config, gossip, (detector, circumstances), control_period, streams);
     let mission = Rc::new(Mission::new(config, parameters, poses));
     (0..poses.len() as u32)
         .map(|robot| Backbone::new(ActorId(robot), Rc::clone(&mission)))
@@ -121,6 +140,7 @@ impl Backbone {
             recruiter: Recruiter::default(),
             sidestep: Sidestep::default(),
             unread: Vec::new(),
+            said: Said::default(),
             told: Told::default(),
         }
     }
@@ -141,6 +161,7 @@ impl Backbone {
                     .hear(frame.sender, frame.sequence, reception.at, position, *status);
             }
             Message::ParentStrand(strand) => self.hear_parent_strand(frame.sender, strand, out),
+            Message::ChildStrand(strand) if self.is_too_long(strand) => {}
             Message::ChildStrand(strand) => match &mut self.duty {
                 Duty::Networker(networker) => {
                     networker.hear_child_strand(frame.sender, strand, self.known.id, self.known.step);
@@ -154,9 +175,25 @@ impl Backbone {
         }
     }
 
+    /// Whether `strand` has come farther than strand info may.
+    fn is_too_long(&self, strand: &Strand) -> bool {
+        strand.robots.len() > self.known.mission.parameters.hop_limit
+    }
+
     /// A robot that names this one as its child and is not counted on as a parent is let go.
     fn hear_parent_strand(&mut self, sender: ActorId, strand: &Strand, out: &mut Vec<Message>) {
         let (me, step) = (self.known.id, self.known.step);
+        let nowhere;
+        let strand = if self.is_too_long(strand) {
+            // It is no way to the root.
+            nowhere = Strand {
+                robots: Rc::default(),
+                ..*strand
+            };
+            &nowhere
+        } else {
+            strand
+        };
         let known = match &mut self.duty {
             Duty::Networker(networker) => networker.slot.hear_parent_strand(sender, strand, me, step),
             Duty::Worker(worker) => {
@@ -219,25 +256,40 @@ impl Backbone {
         }
     }
 
-    fn gossip(&self, proximity: &[Vec2], out: &mut Vec<Message>) {
-        let parameters = &self.known.mission.parameters;
+    fn gossip(&mut self, proximity: &[Vec2], out: &mut Vec<Message>) {
         let view = self.known.view(proximity);
-        let turn = view.turn();
-        if turn.is_multiple_of(parameters.status_every) {
-            out.push(Message::Status(self.status(&view)));
+        let parameters = view.parameters();
+        if view.has_turn(&parameters.status_turns) {
+            let status = self.status(&view);
+            if self.said.status.is_due(parameters.status_repetition, &status) {
+                out.push(Message::Status(status));
+            }
         }
-        if turn.is_multiple_of(parameters.strand_every) {
-            match &self.duty {
-                Duty::Free => {}
-                Duty::Root(_) => Root::strands(self.known.id, out),
-                Duty::Networker(networker) => networker.strands(self.known.id, out),
-                Duty::Worker(worker) => worker.strands(self.known.id, out),
+        if view.has_turn(&parameters.strand_turns) {
+            let strands = self.strands();
+            if self.said.strands.is_due(parameters.strand_repetition, &strands) {
+                out.extend(strands);
             }
         }
         let ordered = self.known.order.epoch != 0 && !matches!(self.duty, Duty::Free);
-        if ordered && turn.is_multiple_of(parameters.request_every * ORDER_REPETITION) {
-            out.push(Message::Request(Request::Order(self.known.order)));
+        if ordered && view.has_turn(&parameters.relay_turns) {
+            let limit = parameters.retransmit.limit(view.mission.robots);
+            if self.said.passes_on(self.known.order, limit) {
+                out.push(Message::Request(Request::Order(self.known.order)));
+            }
         }
+    }
+
+    /// What its strands say now.
+    fn strands(&self) -> Vec<Message> {
+        let mut strands = Vec::new();
+        match &self.duty {
+            Duty::Free => {}
+            Duty::Root(_) => Root::strands(self.known.id, &mut strands),
+            Duty::Networker(networker) => networker.strands(self.known.id, &mut strands),
+            Duty::Worker(worker) => worker.strands(self.known.id, &mut strands),
+        }
+        strands
     }
 
     fn status(&self, view: &View<'_>) -> Status {
@@ -252,6 +304,12 @@ impl Backbone {
             need,
             chain,
         }
+    }
+
+    /// Whether `message` is an order that it has had, or a newer one. Of other messages none is told apart: status and
+    /// strands are signs of life, that they say nothing new is what they say.
+    fn knows(&self, message: &Message) -> bool {
+        matches!(message, Message::Request(Request::Order(order)) if !order.is_newer_than(self.known.order))
     }
 
     /// Tells the metrics what has changed.
@@ -309,6 +367,10 @@ impl Protocol for Backbone {
         self.known.position = input.pose.position;
         let unread = std::mem::take(&mut self.unread);
         for reception in unread.iter().chain(&input.inbox) {
+            let message = &reception.frame.message;
+            if self.knows(message) {
+                output.notes.push(reception.duplicate(Self::topic(message)));
+            }
             self.hear(reception, &mut output.broadcasts);
         }
         if input.wake == Wake::ControlStep {

@@ -163,7 +163,7 @@ impl Networker {
         let patience = match self.orphan {
             Some(_) => parameters.healing_patience,
             // Longer than a child's silence lasts that is not noticed yet.
-            None if self.linked => parameters.join_timeout + parameters.silence_steps,
+            None if self.linked => (parameters.join_timeout + parameters.silence_steps).min(parameters.strand_lifetime),
             None => parameters.join_timeout,
         };
         if view.step - self.confirmed > patience || self.orphan.is_some_and(|orphan| orphan.bypassed) {

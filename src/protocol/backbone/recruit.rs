@@ -33,6 +33,8 @@ pub struct Slot {
     pub parent: ActorId,
     /// The robots from the root to the parent, as last heard.
     pub strand: Vec<ActorId>,
+    /// The control step at which it was heard, or from which on it is waited for.
+    heard: Option<u64>,
     /// Set from the loss of a parent until there is another one.
     pub broken: Option<Break>,
     /// Where the parent was when it was last heard.
@@ -134,6 +136,7 @@ impl Slot {
             chain,
             parent: root,
             strand: vec![root],
+            heard: None,
             broken: None,
             seen: None,
             invitation: None,
@@ -178,7 +181,7 @@ impl Slot {
             self.invite(view, wanted, descendants, recruiter);
         }
         if let Some(invitation) = self.invitation
-            && view.turn().is_multiple_of(view.parameters().request_every)
+            && view.has_turn(&view.parameters().request_turns)
         {
             out.push(Message::Request(invitation.request(self.chain)));
         }
@@ -190,6 +193,10 @@ impl Slot {
         let root = view.mission.root;
         if self.parent == root {
             return;
+        }
+        let heard = *self.heard.get_or_insert(view.step);
+        if view.step - heard > view.parameters().strand_lifetime {
+            self.strand.clear();
         }
         match view.neighbours.get(self.parent) {
             Some(parent) if self.is_served_by(parent) => self.seen = Some(parent.position),
@@ -217,6 +224,7 @@ impl Slot {
     fn link_to(&mut self, parent: ActorId, root: ActorId) {
         self.parent = parent;
         self.strand = vec![root, parent];
+        self.heard = None;
         self.broken = None;
         self.invitation = None;
     }
@@ -307,8 +315,11 @@ impl Slot {
         let names_me = heard.chain == self.chain && heard.next == me;
         if sender == self.parent {
             // A strand that comes back to this robot is no way to the root: without one, the parent is given up.
-            if (heard.chain == 0 || names_me) && !strand::keep(&mut self.strand, &heard.robots, me) {
-                self.strand.clear();
+            if heard.chain == 0 || names_me {
+                self.heard = Some(step);
+                if !strand::keep(&mut self.strand, &heard.robots, me) {
+                    self.strand.clear();
+                }
             }
             return true;
         }

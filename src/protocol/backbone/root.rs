@@ -110,7 +110,7 @@ impl Root {
             });
         }
         if let Some(asked) = self.appointment
-            && view.turn().is_multiple_of(parameters.request_every)
+            && view.has_turn(&parameters.request_turns)
         {
             out.extend(self.request(asked).map(Message::Request));
         }

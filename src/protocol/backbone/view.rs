@@ -10,6 +10,7 @@ use super::message::{Order, Role};
 use super::mission::{Mission, Parameters};
 use super::neighbours::{Neighbour, Neighbours};
 use crate::protocol::detector::Detector;
+use crate::protocol::gossip::Turns;
 
 /// What a robot knows whatever its role.
 #[derive(Debug)]
@@ -66,10 +67,10 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// Its number among those that take turns where a message is not sent at every step.
+    /// Whether it has its turn on a topic. Robots take turns where a message is not sent at every step.
     #[must_use]
-    pub fn turn(&self) -> u64 {
-        self.step + u64::from(self.id.0)
+    pub fn has_turn(&self, turns: &Turns) -> bool {
+        turns.is_due(self.id, self.step + u64::from(self.id.0))
     }
 
     /// The settings.

@@ -159,7 +159,7 @@ impl Detector {
 mod tests {
     use super::*;
     use crate::engine::Span;
-    use crate::protocol::{Evidence, Frame, Note};
+    use crate::protocol::{Evidence, Frame, MessageSize, Note};
     use crate::quantity::Positive;
 
     const TIMEOUT_S: f64 = 2.5;
@@ -201,7 +201,7 @@ mod tests {
                 sender: ActorId(sender),
                 sequence,
                 sent_at: SimTime::ZERO,
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: Alive,
             },
             displacement: [0.0; 2],

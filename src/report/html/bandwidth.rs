@@ -197,7 +197,7 @@ pub fn headers(input: &PageInput) -> Figure {
             payload_rate.into(),
             header_rate.into(),
         ]);
-        let label = share.map_or(String::new(), |share| format!("{:.0} % headers", share * 100.0));
+        let label = share.map_or(String::new(), |share| format!("{:.0} %", share * 100.0));
         bars.push((words(input.topic(topic)), payload_rate, header_rate, label));
     }
     bars.reverse();
@@ -237,10 +237,12 @@ pub fn headers(input: &PageInput) -> Figure {
         id: "headers",
         title: "Payload and headers",
         caption: format!(
-            "What a robot sends on average {}, split into the bytes of the messages and the {} bytes of header that each frame \
-             carries. Small messages pay most for their headers: sending several in one frame saves that.",
+            "What a robot sends on average {}, split into the bytes of the messages and of their headers, {} for each frame and {} for \
+             each message in it; the number is the share of headers. Small messages pay most for their headers: sending several in one \
+             frame saves some of that.",
             input.in_trials(),
-            input.scenario.radio.header_bytes
+            input.scenario.radio.frame_header_bytes,
+            input.scenario.radio.message_header_bytes
         ),
         panels: vec![Panel::of_rows("", plot, input.topics.len())],
         table,

@@ -73,10 +73,14 @@ pub fn healing(input: &PageInput) -> Option<Figure> {
         .collect();
     observations.first()?;
     let total = &input.summary.healing.as_ref()?.total;
+    let cut_off = if total.healed < total.failures {
+        " Failures whose trial ended first are cut off, each marked by a tick."
+    } else {
+        ""
+    };
     let caption = format!(
         "The share of failures mended by each time since the failure, of those that cost a target a link or its worker, after Kaplan and Meier: \
-         {} of {} were mended, half within {}. {} Failures whose trial ended first are cut off, each marked by a tick. The band takes failures as independent, \
-         also those of one trial.",
+         {} of {} were mended, half within {}. {} It takes failures as independent, also those of one trial.{cut_off}",
         number::count(total.healed),
         number::count(total.failures),
         number::estimate(&total.time.median, number::seconds),

@@ -2,7 +2,7 @@
 (() => {
   const charts = () => document.querySelectorAll(".js-plotly-plot");
   // A finger that passes over a chart scrolls the page; a pointer that drags zooms in.
-  if (matchMedia("(pointer: coarse)").matches) {
+  if (matchMedia("(pointer: coarse), (hover: none), (max-width: 48rem)").matches) {
     charts().forEach((chart) => Plotly.relayout(chart, { dragmode: false }));
   }
   // Paper has another width than the screen, and nothing on it can be opened.

@@ -2,8 +2,8 @@
 
 use plotly::Bar;
 use plotly::Scatter;
-use plotly::common::{Font, LineShape, Marker, MarkerSymbol, Mode, Orientation, Position};
-use plotly::layout::{AxisType, HoverMode};
+use plotly::common::{Font, HoverInfo, LineShape, Marker, Mode, Orientation, Position};
+use plotly::layout::{AxisRange, AxisType, HoverMode};
 
 use super::PageInput;
 use super::chart::{ALL, DIRECTIONS, axis, categories, cause_colour, chart, line, percent_axis, shown, stacked, words};
@@ -82,47 +82,21 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
         .map(|[time, share]| vec![(*time).into(), (*share).into()])
         .collect();
     let wide = least.as_nanos() > 0 && most.as_nanos() / least.as_nanos().max(1) >= 20;
-    let x = axis("time from the start of a transmission to its arrival, ms");
-    let x = if wide { x.type_(AxisType::Log) } else { x };
+    let x = axis("latency, ms");
+    let x = if wide {
+        x.type_(AxisType::Log)
+    } else {
+        x.range(AxisRange::new(0.0, shown(most.as_secs() * 1.15e3)))
+    };
     let mut plot = chart(x, percent_axis("copies that took no longer"), HoverMode::Closest);
-    plot.add_trace(
-        line(
-            "copies",
-            ALL,
-            &curve,
-            LineShape::Hv,
-            "%{y:.2f} % within %{x:.4g} ms<extra></extra>",
-        )
-        .show_legend(false),
-    );
-    let named = [(0.5, "median"), (0.95, "95 %"), (0.99, "99 %")];
-    let quantiles: Vec<_> = named
-        .into_iter()
-        .filter_map(|(q, name)| Some((all.quantile(q)?.as_secs(), q * 100.0, name)))
-        .collect();
-    let label = |(time, _, name): &(f64, f64, &str)| format!("  {name}: {}  ", number::seconds(*time));
-    let marks = Scatter::new(
-        quantiles.iter().map(|(time, ..)| shown(time * 1e3)).collect::<Vec<_>>(),
-        quantiles.iter().map(|(_, share, _)| *share).collect::<Vec<_>>(),
-    )
-    .mode(Mode::MarkersText)
-    .marker(Marker::new().color(DIRECTIONS[1]).size(7).symbol(MarkerSymbol::Circle))
-    .text_array(quantiles.iter().map(label).collect::<Vec<_>>())
-    .text_position_array(
-        [Position::MiddleLeft, Position::MiddleLeft, Position::BottomRight]
-            .into_iter()
-            .take(quantiles.len())
-            .collect(),
-    )
-    .text_font(Font::new().size(11))
-    .hover_info(plotly::common::HoverInfo::Skip)
-    .show_legend(false);
-    plot.add_trace(marks);
+    let hover = "%{y:.2f} % within %{x:.4g} ms<extra></extra>";
+    plot.add_trace(line("copies", ALL, &curve, LineShape::Hv, hover).show_legend(false));
+    plot.add_trace(quantiles(&all));
     Some(Figure {
         id: "latency",
         title: "Latency as felt",
         caption: format!(
-            "Which share of the {} copies that arrived {} took no longer than so many milliseconds; dots are the median and the 95th and \
+            "Which share of the {} copies that arrived {} took no longer than so many milliseconds, from the start of its transmission to its arrival; dots are the median and the 95th and \
              99th percentile. Times are those of buckets at most 1/128 of their lower end wide.{}",
             number::count(all.count()),
             input.in_trials(),
@@ -131,4 +105,49 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
         panels: vec![Panel::new("", plot)],
         table,
     })
+}
+
+/// A mark on the curve.
+struct Mark {
+    /// Where, milliseconds and percent.
+    at: [f64; 2],
+    /// Which quantiles it is.
+    names: String,
+    /// Their latency, in words.
+    time: String,
+}
+
+/// Marks at the median and at the 95th and 99th percentile, those that read the same in one.
+fn quantiles(all: &LatencyHistogram) -> Box<Scatter<f64, f64>> {
+    let mut marks: Vec<Mark> = Vec::new();
+    for (q, name) in [(0.5, "median"), (0.95, "95 %"), (0.99, "99 %")] {
+        let Some(latency) = all.quantile(q) else { continue };
+        let time = number::seconds(latency.as_secs());
+        match marks.iter_mut().find(|mark| mark.time == time) {
+            Some(mark) => mark.names = format!("{}, {name}", mark.names),
+            None => marks.push(Mark {
+                at: [shown(latency.as_secs() * 1e3), q * 100.0],
+                names: name.to_owned(),
+                time,
+            }),
+        }
+    }
+    let label = |mark: &Mark| format!("  {}: {}  ", mark.names, mark.time);
+    // What is near the top has no room above, and may have none on the left.
+    let side = |mark: &Mark| {
+        if mark.at[1] > 98.0 {
+            Position::BottomRight
+        } else {
+            Position::MiddleLeft
+        }
+    };
+    let places = |part: usize| marks.iter().map(|mark| mark.at[part]).collect::<Vec<_>>();
+    Scatter::new(places(0), places(1))
+        .mode(Mode::MarkersText)
+        .marker(Marker::new().color(DIRECTIONS[1]).size(7))
+        .text_array(marks.iter().map(label).collect::<Vec<_>>())
+        .text_position_array(marks.iter().map(side).collect())
+        .text_font(Font::new().size(11))
+        .hover_info(HoverInfo::Skip)
+        .show_legend(false)
 }

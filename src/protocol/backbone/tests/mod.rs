@@ -1,9 +1,10 @@
 //! Robots that are handed frames by hand: joining, its undoing, and orders.
 
+mod gossip;
 mod healing;
 
 use super::*;
-use crate::protocol::{Frame, TimerId};
+use crate::protocol::{Frame, MessageSize, TimerId};
 use rand_philox::Philox;
 
 const ROOT: u32 = 0;
@@ -13,6 +14,10 @@ const OTHER_FREE: u32 = 3;
 
 /// A root at the centre, a worker far enough out to recruit, and two free robots in between.
 fn robots(targets: u8) -> Vec<Backbone> {
+    robots_with(targets, &GossipConfig::default())
+}
+
+fn robots_with(targets: u8, gossip: &GossipConfig) -> Vec<Backbone> {
     let config = ron::from_str(&format!("(targets: Ring(count: {targets}, radius: 4.5))")).unwrap();
     let poses: Vec<Pose> = [0.0, 1.2, 0.7, 0.4]
         .map(|x| Pose {
@@ -22,10 +27,11 @@ fn robots(targets: u8) -> Vec<Backbone> {
         .into();
     swarm(
         &config,
-        &GossipConfig::default(),
+        gossip,
         &DetectorConfig::default(),
         Span::from_secs(0.1),
         &poses,
+        Streams::new(1, 0),
     )
 }
 
@@ -38,8 +44,12 @@ struct Bench {
 
 impl Bench {
     fn new(robot: u32, x: f64) -> Self {
+        Self::with(&GossipConfig::default(), robot, x)
+    }
+
+    fn with(gossip: &GossipConfig, robot: u32, x: f64) -> Self {
         Self {
-            robot: robots(1).remove(robot as usize),
+            robot: robots_with(1, gossip).remove(robot as usize),
             x,
             sequence: 0,
         }
@@ -55,7 +65,7 @@ impl Bench {
                 sender: ActorId(*sender),
                 sequence: self.sequence,
                 sent_at: now,
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message: message.clone(),
             },
             displacement: [(x - self.x) as f32, 0.0],

@@ -11,7 +11,8 @@ use crate::quantity::{NonNegative, Positive};
 #[serde(deny_unknown_fields, default)]
 pub struct SwimConfig {
     /// Seconds from one probe to the next of a robot that is in good health (the protocol period T of SWIM). Recommended:
-    /// at least three times what a message and its answer take, control periods included.
+    /// at least four times what a message takes, the wait for its receiver's control step included, beside the probe timeout:
+    /// 1.5 s with the radio's default latency.
     pub probe_interval: Positive,
     /// Seconds within which the robot probed must have acknowledged; then others are asked to probe it. Must be shorter than
     /// the probe interval, which must leave the others time for two messages and their answers.

@@ -1,7 +1,7 @@
 //! One robot's side of SWIM, handed frames one by one.
 
 use super::*;
-use crate::protocol::{Frame, Note};
+use crate::protocol::{Frame, MessageSize, Note};
 use crate::quantity::{NonNegative, Positive};
 
 const ME: ActorId = ActorId(0);
@@ -90,7 +90,7 @@ impl Bench {
                 sender,
                 sequence: self.sequence,
                 sent_at: at(seconds),
-                payload_bytes: 4,
+                size: MessageSize::alone(4),
                 message,
             },
             displacement: [0.0; 2],

@@ -1,0 +1,225 @@
+//! Predictions held against the figures of a run.
+
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::scene::Scene;
+use super::{Holds, Prediction, Preflight};
+use crate::metrics::summary::TopicBandwidth;
+use crate::metrics::{Estimate, Summary};
+use crate::scenario::Scenario;
+
+/// Probability that chance alone makes a run disagree with any of the predictions that it is held against.
+const CHANCE: f64 = 0.05;
+/// Mistakes, expected or made, from which their figures say something.
+const FEWEST_MISTAKES: f64 = 10.0;
+
+/// A figure of a run that is not what was predicted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Surprise {
+    /// The prediction, for trials as long as the run's were.
+    pub predicted: Prediction,
+    /// The run's figure, in the same unit, with its 95 % interval.
+    pub measured: Estimate,
+    /// What in the run may explain it.
+    pub why: String,
+}
+
+/// Where the run that `summary` tells of disagrees with what closed forms say of `scenario`, of which it is the run. A figure
+/// counts only if its prediction should hold for the run. It disagrees if the prediction, give or take its accuracy, lies outside the
+/// figure's interval, taken so wide that chance makes any of all those compared disagree in one run of twenty (Bonferroni).
+/// A single trial has no intervals, and disagrees with nothing.
+#[must_use]
+pub fn surprises(scenario: &Scenario, summary: &Summary) -> Vec<Surprise> {
+    if summary.trials == 0 {
+        return Vec::new();
+    }
+    let preflight = Preflight::lasting(scenario, summary.simulated_s.value / summary.trials as f64);
+    let scene = Scene::of(scenario, scenario.time_limit.get());
+    let compared: Vec<(&Prediction, Compared)> = preflight
+        .predictions
+        .iter()
+        .filter_map(|prediction| Some((prediction, compared(prediction, summary)?)))
+        .collect();
+    let family = compared.len();
+    compared
+        .into_iter()
+        .filter(|(prediction, Compared { measured, slack })| {
+            !agrees(prediction.value, prediction.accuracy + slack, measured, family)
+        })
+        .map(|(prediction, Compared { measured, .. })| Surprise {
+            predicted: prediction.clone(),
+            measured,
+            why: explanation(prediction.name, &scene, summary),
+        })
+        .collect()
+}
+
+/// A figure of a run, and what it may be off for reasons of its own.
+struct Compared {
+    measured: Estimate,
+    slack: f64,
+}
+
+/// The figure that `prediction` is about, if it should hold for the run.
+fn compared(prediction: &Prediction, summary: &Summary) -> Option<Compared> {
+    let detection = &summary.detection;
+    let throughout = prediction.holds == Holds::Throughout;
+    let plain = |measured: Estimate| throughout.then_some(Compared { measured, slack: 0.0 });
+    match prediction.name {
+        "loss_ratio" => plain(lost(summary)?),
+        "latency_s" => plain(summary.latency_s.mean),
+        "status_tx_bytes_per_step" => plain(status(summary)?.directions.tx_bytes_per_step.mean),
+        "status_rx_bytes_per_step" => plain(status(summary)?.directions.rx_bytes_per_step.mean),
+        "mistake_rate_hz" => {
+            let monitored = detection.monitored_s.value;
+            let expected = prediction.value * monitored;
+            let made = detection.mistakes.value as f64;
+            let tells = expected.max(made) >= FEWEST_MISTAKES;
+            // A robot that leaves the range may count as a mistake or not, as losses have it.
+            let left = *by_verdict(summary, "out_of_range")? as f64 / monitored;
+            let (holds, slack) = match prediction.holds {
+                Holds::Throughout => (true, 0.0),
+                Holds::InRange => (true, left),
+                Holds::AtStart | Holds::AtEnd => (false, 0.0),
+            };
+            (holds && tells).then_some(Compared {
+                measured: detection.mistake_rate_hz.estimate,
+                slack,
+            })
+        }
+        "mistake_duration_s" if detection.mistakes.value as f64 >= FEWEST_MISTAKES => {
+            plain(detection.mistake_duration_s.estimate)
+        }
+        "query_accuracy" if detection.mistakes.value as f64 >= FEWEST_MISTAKES => {
+            plain(detection.query_accuracy.estimate)
+        }
+        "detection_time_s" => plain(detection.detection_time_s.estimate),
+        _ => None,
+    }
+}
+
+/// The share of copies lost, those under way at the end left out.
+fn lost(summary: &Summary) -> Option<Estimate> {
+    let fates = &summary.frames.total;
+    let in_flight = (fates.offered > 0).then(|| fates.in_flight as f64 / fates.offered as f64)?;
+    let delivered = summary.delivery_ratio.estimate;
+    let lost = |delivered: f64| 1.0 - delivered - in_flight;
+    let [low, high] = delivered.ci95.map(|end| end.map(lost));
+    Some(Estimate {
+        value: delivered.value.map(lost),
+        ci95: [high, low],
+        ..delivered
+    })
+}
+
+fn status(summary: &Summary) -> Option<&TopicBandwidth> {
+    let topics = summary.bandwidth.by_topic.0.iter();
+    topics
+        .clone()
+        .find(|(topic, _)| topic == "status")
+        .map(|(_, bandwidth)| bandwidth)
+}
+
+fn by_verdict<'a>(summary: &'a Summary, verdict: &str) -> Option<&'a u64> {
+    let verdicts = summary.detection.suspicions.by_verdict.0.iter();
+    verdicts
+        .clone()
+        .find(|(name, _)| name == verdict)
+        .map(|(_, number)| number)
+}
+
+/// Whether a prediction is within `accuracy` of the interval of one of `family` figures.
+fn agrees(predicted: f64, accuracy: f64, measured: &Estimate, family: usize) -> bool {
+    let (Some(value), [Some(low), Some(high)]) = (measured.value, measured.ci95) else {
+        return true;
+    };
+    let wider = widening(measured.n, family);
+    let (low, high) = (value + wider * (low - value), value + wider * (high - value));
+    // Figures are sums of many roundings.
+    let accuracy = accuracy + 1e-9 * predicted.abs();
+    predicted + accuracy >= low && predicted - accuracy <= high
+}
+
+/// How much wider Student's interval of `trials` is at the level of one of `family` than at 95 %.
+fn widening(trials: u64, family: usize) -> f64 {
+    let Ok(student) = StudentsT::new(0.0, 1.0, trials.saturating_sub(1) as f64) else {
+        return 1.0;
+    };
+    let quantile = |family: f64| student.inverse_cdf(1.0 - CHANCE / 2.0 / family);
+    quantile(family as f64) / quantile(1.0)
+}
+
+/// A word on what may have made the figure another than was predicted.
+fn explanation(name: &str, scene: &Scene<'_>, summary: &Summary) -> String {
+    let fates = &summary.frames.total;
+    let others = fates
+        .lost
+        .0
+        .iter()
+        .filter(|(cause, lost)| cause != "channel" && *lost > 0);
+    let others: Vec<String> = others
+        .map(|(cause, lost)| {
+            let share = 100.0 * *lost as f64 / fates.offered as f64;
+            format!("{} {share:.2} %", cause.replace('_', " "))
+        })
+        .collect();
+    let mut reasons = Vec::new();
+    let of_losses = !matches!(name, "latency_s" | "status_tx_bytes_per_step");
+    if of_losses && !others.is_empty() {
+        reasons.push(format!("copies were lost beside the channel ({})", others.join(", ")));
+    }
+    if summary
+        .faults
+        .as_ref()
+        .is_some_and(|faults| faults.robots.estimate.value > Some(0.0))
+    {
+        reasons.push("robots failed, and who fails neither sends nor hears as before".to_owned());
+    }
+    if of_losses && !scene.stands_still() {
+        reasons.push("robots moved, and neighbours with them".to_owned());
+    }
+    if reasons.is_empty() {
+        "nothing in the run explains it: the model and its closed form may differ".to_owned()
+    } else {
+        reasons.join("; ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn estimate(value: f64, half_width: f64, n: u64) -> Estimate {
+        Estimate {
+            value: Some(value),
+            ci95: [Some(value - half_width), Some(value + half_width)],
+            n,
+        }
+    }
+
+    #[test]
+    fn a_prediction_agrees_with_an_interval_within_its_accuracy_and_with_no_interval_always() {
+        let measured = estimate(0.2, 0.01, 35);
+        for (predicted, accuracy, agreed) in [(0.205, 0.0, true), (0.22, 0.0, false), (0.22, 0.0101, true)] {
+            assert_eq!(
+                agrees(predicted, accuracy, &measured, 1),
+                agreed,
+                "{predicted} ± {accuracy}"
+            );
+        }
+        let single = Estimate {
+            ci95: [None; 2],
+            ..measured
+        };
+        assert!(agrees(0.9, 0.0, &single, 1));
+    }
+
+    #[test]
+    fn an_interval_is_the_wider_the_more_figures_are_compared() {
+        // scipy.stats.t.ppf(1 − 0.025/8, 34) / scipy.stats.t.ppf(0.975, 34) = 2.9151 / 2.0322
+        assert!((widening(35, 8) - 1.434_454_7).abs() < 1e-6, "{}", widening(35, 8));
+        assert!((widening(35, 1) - 1.0).abs() < 1e-12);
+        assert!(agrees(0.213, 0.0, &estimate(0.2, 0.01, 35), 8) && !agrees(0.213, 0.0, &estimate(0.2, 0.01, 35), 1));
+    }
+}

@@ -1,0 +1,135 @@
+//! What several predictions need to know of a scenario.
+
+use crate::engine::Span;
+use crate::motion::Spacing;
+use crate::protocol::gossip::{SendConfig, Timing};
+use crate::protocol::wander::WanderConfig;
+use crate::radio::LossConfig;
+use crate::scenario::{ProtocolConfig, Scenario};
+
+/// A scenario, looked at by one who predicts.
+pub struct Scene<'a> {
+    pub scenario: &'a Scenario,
+    /// How long a trial lasts, seconds.
+    pub duration_s: f64,
+    /// Where robots stand at the start, or why no law of it is known.
+    pub spacing: Result<Spacing, &'static str>,
+}
+
+/// Shells that the range is cut into where a figure depends on the distance.
+const SHELLS: usize = 100;
+/// Bytes of a status, header not included: the codec's of either protocol.
+const STATUS_BYTES: f64 = 4.0;
+
+impl<'a> Scene<'a> {
+    pub fn of(scenario: &'a Scenario, duration_s: f64) -> Self {
+        let swarm = &scenario.swarm;
+        let body_radius = scenario.motion.body_radius.get();
+        Self {
+            scenario,
+            duration_s,
+            spacing: Spacing::of(&swarm.deploy, &scenario.arena, swarm.robots, body_radius),
+        }
+    }
+
+    /// Whether robots stay where they are deployed.
+    pub fn stands_still(&self) -> bool {
+        match self.scenario.protocol {
+            ProtocolConfig::Backbone(_) => false,
+            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => self.scenario.wander == WanderConfig::Still,
+        }
+    }
+
+    /// Why no steady stream of statuses can be counted on, if none can.
+    pub fn unsteady(&self) -> Option<&'static str> {
+        match (&self.scenario.protocol, self.scenario.gossip.status.send) {
+            (ProtocolConfig::Rumor(_), _) => Some("the protocol sends no statuses"),
+            (_, SendConfig::OnChange { .. }) => {
+                Some("statuses are sent when what they say changes: how often that is depends on the mission")
+            }
+            (_, SendConfig::Always) => None,
+        }
+    }
+
+    /// Whether robots send nothing but statuses.
+    pub fn sends_statuses_alone(&self) -> bool {
+        match self.scenario.protocol {
+            ProtocolConfig::Backbone(_) | ProtocolConfig::Rumor(_) => false,
+            ProtocolConfig::Heartbeat => !self.scenario.detector.sends(),
+        }
+    }
+
+    /// Length of a control step, seconds.
+    pub fn period_s(&self) -> f64 {
+        self.scenario.control.period.get()
+    }
+
+    /// The rhythm of statuses.
+    pub fn status_timing(&self) -> Timing {
+        self.scenario.gossip.status.timing(Span::from_secs(self.period_s()))
+    }
+
+    /// Control steps from one status of a robot to the next, on average.
+    pub fn steps_a_status(&self) -> f64 {
+        self.status_timing().every() as f64
+    }
+
+    /// η, seconds from one status of a robot to the next.
+    pub fn interval_s(&self) -> f64 {
+        self.steps_a_status() * self.period_s()
+    }
+
+    /// Bytes of a status, headers included.
+    pub fn status_bytes(&self) -> f64 {
+        let radio = &self.scenario.radio;
+        STATUS_BYTES + f64::from(radio.frame_header_bytes) + f64::from(radio.message_header_bytes)
+    }
+
+    /// Those of them that are another message's where a status is not the first in its frame.
+    pub fn shared_bytes(&self) -> f64 {
+        let shared = self.scenario.gossip.piggyback && !self.sends_statuses_alone();
+        if shared {
+            f64::from(self.scenario.radio.frame_header_bytes)
+        } else {
+            0.0
+        }
+    }
+
+    /// The means of figures of the distance over the neighbours at the start; the figures themselves where they do not depend on
+    /// it. `None` if distances are not known, or nobody has a neighbour.
+    pub fn mean_over_neighbours<const N: usize>(&self, figures: impl Fn(f64) -> [f64; N]) -> Option<[f64; N]> {
+        let range = self.scenario.radio.range.get();
+        if !self.depends_on_distance() {
+            return Some(figures(range));
+        }
+        // Shells, so that the work does not grow with the number of places given.
+        let mut shells = [[0.0; 2]; SHELLS];
+        self.spacing.as_ref().ok()?.for_each_within(range, |distance, number| {
+            let shell = ((distance / range * SHELLS as f64) as usize).min(SHELLS - 1);
+            shells[shell][0] += number;
+            shells[shell][1] += number * distance;
+        });
+        let neighbours: f64 = shells.iter().map(|shell| shell[0]).sum();
+        let mut means = [0.0; N];
+        for [number, distances] in shells.into_iter().filter(|shell| shell[0] > 0.0) {
+            let figures = figures(distances / number);
+            for (mean, figure) in means.iter_mut().zip(figures) {
+                *mean += number / neighbours * figure;
+            }
+        }
+        (neighbours > 0.0).then_some(means)
+    }
+
+    /// Whether copies to near robots are lost less often than those to far ones.
+    pub fn depends_on_distance(&self) -> bool {
+        matches!(self.scenario.radio.loss, LossConfig::Distance { .. })
+    }
+
+    /// The share of copies lost in the channel, over the neighbours at the start.
+    pub fn loss_ratio(&self) -> Option<f64> {
+        let radio = &self.scenario.radio;
+        let loss = |distance| radio.loss.mean_loss(distance, radio.range.get());
+        self.mean_over_neighbours(|distance| [loss(distance)])
+            .map(|[loss]| loss)
+    }
+}

@@ -1,0 +1,170 @@
+//! Predictions for whole scenarios.
+
+use super::*;
+use crate::protocol::detector::Link;
+use crate::scenario::parse;
+
+fn scenario(text: &str) -> Scenario {
+    let text = format!("Scenario(name: \"expected\", time_limit: 400.0, {text})");
+    parse("expected.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn preflight(text: &str) -> Preflight {
+    Preflight::of(&scenario(text))
+}
+
+#[track_caller]
+fn assert_value(preflight: &Preflight, name: &str, expected: f64) {
+    let found = preflight
+        .get(name)
+        .unwrap_or_else(|| panic!("{name} is not predicted"))
+        .value;
+    assert!(
+        (found - expected).abs() <= 1e-9 * expected.abs(),
+        "{name}: {found}, not {expected}"
+    );
+}
+
+/// Three robots in a row, 1 m apart, hear their neighbours at most: 4/3 a robot.
+const ROW: &str = "swarm: (robots: 3, deploy: At([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)])), protocol: Heartbeat,
+    control: (period: 0.5), gossip: (status: (interval: 1.0)), detector: Timeout(3.5)";
+
+#[test]
+fn robots_that_stand_still_are_predicted_throughout_by_the_published_forms() {
+    let expected = preflight(&format!(
+        "{ROW}, radio: (range: 1.0, loss: Bernoulli(0.2), latency: Constant(0.05))"
+    ));
+    for (name, value) in [
+        ("degree", 4.0 / 3.0),
+        ("loss_ratio", 0.2),
+        ("latency_s", 0.05),
+        ("status_frames_per_step", 0.5),
+        ("status_tx_bytes_per_step", 4.5),
+        ("status_rx_bytes_per_step", 4.5 * 0.8 * 4.0 / 3.0),
+        ("channel_load_bytes_per_s", 9.0 * 4.0 / 3.0),
+        ("mistake_recurrence_s", 156.25),
+        // 0.75 s, and from the arrival at 0.05 s to the reading at 0.5 s.
+        ("mistake_duration_s", 0.75 + 0.45),
+        ("query_accuracy", 1.0 - 1.2 / 156.25),
+    ] {
+        assert_value(&expected, name, value);
+    }
+    assert!(
+        expected
+            .predictions
+            .iter()
+            .all(|prediction| prediction.holds == Holds::Throughout)
+    );
+    let refused: Vec<_> = expected.not_predicted.iter().map(|refused| refused.name).collect();
+    assert_eq!(refused, ["channel_utilisation"]);
+}
+
+#[test]
+fn bursts_and_distance_have_their_own_mean_loss() {
+    let bursts = preflight(&format!(
+        "{ROW}, radio: (loss: GilbertElliott(good_to_bad: 0.05, bad_to_good: 0.2), latency: Constant(0.05))"
+    ));
+    assert_value(&bursts, "loss_ratio", 0.2);
+    assert_value(&bursts, "mistake_recurrence_s", 39.0625);
+    // Of six copies of a round four go 1 m and two 2 m: a quarter of 0.4 is lost of the former, all of 0.4 of the latter.
+    let by_distance = preflight(&format!("{ROW}, radio: (loss: Distance(at_range: 0.4, exponent: 2.0))"));
+    assert_value(&by_distance, "loss_ratio", (4.0 * 0.1 + 2.0 * 0.4) / 6.0);
+    let rate = |p: f64| (1.0 - p) * p.powi(3);
+    assert_value(
+        &by_distance,
+        "mistake_rate_hz",
+        (4.0 * rate(0.1) + 2.0 * rate(0.4)) / 6.0,
+    );
+}
+
+#[test]
+fn of_the_backbone_it_is_said_what_holds_when_and_what_nobody_can_predict() {
+    let expected = preflight(
+        "swarm: (robots: 40, deploy: Cluster(radius: 1.06)), radio: (loss: Bernoulli(0.2)),
+         protocol: Backbone(targets: Ring(count: 4, radius: 4.5, links: 2))",
+    );
+    let holds = |name| expected.get(name).map(|prediction| prediction.holds);
+    assert_eq!(holds("loss_ratio"), Some(Holds::Throughout));
+    assert_eq!(holds("degree"), Some(Holds::AtStart));
+    assert_eq!(holds("mistake_rate_hz"), Some(Holds::InRange));
+    assert_value(&expected, "robots_needed", 21.0);
+    assert_value(&expected, "status_tx_bytes_per_step", 9.0);
+    let refused: Vec<_> = expected.not_predicted.iter().map(|refused| refused.name).collect();
+    assert_eq!(refused, ["degree_at_end", "request", "strand", "channel_utilisation"]);
+}
+
+/// The closed forms of the detectors themselves are for simple Gilbert loss and constant latency: here both must be the same.
+#[test]
+fn timeouts_and_nfd_s_are_predicted_as_their_own_closed_forms_have_it() {
+    let link = Link {
+        interval_s: 1.0,
+        good_to_bad: 0.05,
+        bad_to_good: 0.2,
+        latency_s: 0.05,
+    };
+    for detector in ["Timeout(3.5)", "Timeout(3.0)", "NfdS(shift: 2.5)", "NfdS(shift: 3.0)"] {
+        let radio = "radio: (loss: GilbertElliott(good_to_bad: 0.05, bad_to_good: 0.2), latency: Constant(0.05))";
+        let text = format!("{}, {radio}", ROW.replace("Timeout(3.5)", detector));
+        let text = text.replace("control: (period: 0.5)", "control: (period: 0.5, wake: OnReception)");
+        let expected = preflight(&text);
+        let quality = scenario(&text).detector.quality(&link).unwrap();
+        assert_value(&expected, "mistake_recurrence_s", quality.mistake_recurrence_s);
+        assert_value(&expected, "mistake_duration_s", quality.mistake_duration_s);
+        assert_value(&expected, "query_accuracy", quality.query_accuracy);
+        assert_value(&expected, "detection_time_s", quality.detection_time_s);
+    }
+}
+
+#[test]
+fn detectors_without_closed_forms_are_said_to_have_none() {
+    for detector in ["PhiAccrual(dialect: Chitchat)", "Swim()"] {
+        let expected = preflight(&ROW.replace("Timeout(3.5)", detector));
+        assert!(expected.get("mistake_rate_hz").is_none(), "{detector}");
+        assert!(
+            expected.not_predicted.iter().any(|refused| refused.name == "detection"),
+            "{detector}"
+        );
+        assert_eq!(
+            expected.not_predicted.iter().any(|refused| refused.name == "probe"),
+            detector.starts_with("Swim")
+        );
+    }
+}
+
+#[test]
+fn where_the_forms_do_not_hold_it_is_said_so() {
+    for (radio, why) in [
+        ("latency: Constant(0.0)", "the order of events"),
+        ("latency: Uniform(min: 0.0, max: 2.0)", "overtake"),
+    ] {
+        let expected = preflight(&format!("{}, radio: ({radio})", ROW.replace("3.5", "3.0")));
+        let refused = expected
+            .not_predicted
+            .iter()
+            .find(|refused| refused.name == "detection");
+        assert!(
+            refused.is_some_and(|refused| refused.why.contains(why)),
+            "{radio}: {refused:?}"
+        );
+    }
+    let walls = preflight("swarm: (robots: 9, deploy: Cluster(radius: 5.0)), protocol: Heartbeat");
+    assert!(walls.get("degree").is_none() && walls.get("channel_load_bytes_per_s").is_none());
+}
+
+#[test]
+fn everything_predicted_is_a_finite_number_in_json() {
+    for loss in [
+        "None",
+        "Bernoulli(1.0)",
+        "GilbertElliott(good_to_bad: 0.5, bad_to_good: 0.0)",
+        "Bernoulli(0.5)",
+    ] {
+        let expected = preflight(&format!("{ROW}, radio: (loss: {loss})"));
+        let all = &expected.predictions;
+        assert!(
+            all.iter()
+                .all(|found| found.value.is_finite() && found.accuracy.is_finite()),
+            "{loss}: {all:?}"
+        );
+    }
+}

@@ -1,0 +1,112 @@
+//! What gossip settings do to one robot: sending on change, strands that are old or have come too far, orders passed on.
+
+use super::*;
+
+fn gossip(text: &str) -> GossipConfig {
+    ron::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+/// The root and the worker, as a robot between them hears them.
+fn company() -> [(u32, f64, Message); 2] {
+    [
+        (ROOT, 0.0, status(Role::Root, false, 0)),
+        (WORKER, 1.2, status(Role::Worker, true, 1)),
+    ]
+}
+
+/// A robot that accepted to join and heard `childs` strand.
+fn joined(gossip: &GossipConfig, childs: Strand) -> Bench {
+    let mut bench = Bench::with(gossip, FREE, 0.7);
+    let [root, worker] = company();
+    bench.step(&[root.clone(), worker.clone(), (WORKER, 1.2, join(FREE, 1))]);
+    bench.step(&[root, worker, (WORKER, 1.2, Message::ChildStrand(childs))]);
+    bench
+}
+
+fn is_settled(bench: &Bench) -> bool {
+    matches!(&bench.robot.duty, Duty::Networker(networker) if networker.is_settled())
+}
+
+#[test]
+fn a_relay_goes_free_when_its_childs_strand_outlives_its_time() {
+    for (settings, role) in [
+        ("()", Role::Networker),
+        ("(strand: (time_to_live: Seconds(3.0)))", Role::Networker),
+        ("(strand: (time_to_live: Seconds(1.0)))", Role::Free),
+    ] {
+        let mut bench = joined(&gossip(settings), strand(FREE, &[WORKER]));
+        assert!(is_settled(&bench), "{settings}");
+        bench.run(2.0, &company());
+        assert_eq!(bench.role(), role, "{settings}");
+    }
+}
+
+#[test]
+fn a_parent_of_whom_only_statuses_are_heard_is_given_up_when_its_strand_outlives_its_time() {
+    for (settings, parent) in [("()", FREE), ("(strand: (time_to_live: Seconds(1.0)))", ROOT)] {
+        let mut worker = Bench::with(&gossip(settings), WORKER, 1.2);
+        let root = (ROOT, 0.0, status(Role::Root, false, 0));
+        let asked = worker.step(&[root.clone(), (FREE, 0.7, status(Role::Free, false, 0))]);
+        let asked = requests(&asked).into_iter().find_map(|request| match request {
+            Request::Join { sequence, .. } => Some(sequence),
+            _ => None,
+        });
+        let yes = Message::Request(accept(WORKER, asked.expect("a free robot is asked")));
+        let relay = (FREE, 0.7, status(Role::Networker, true, 1));
+        worker.step(&[root.clone(), relay.clone(), (FREE, 0.7, yes)]);
+        worker.step(&[root.clone(), relay.clone()]);
+        assert_eq!(worker.robot.duty.slots()[0].parent, ActorId(FREE), "{settings}");
+        worker.run(2.0, &[root, relay]);
+        assert_eq!(worker.robot.duty.slots()[0].parent, ActorId(parent), "{settings}");
+    }
+}
+
+#[test]
+fn a_strand_that_names_more_robots_than_it_may_links_nobody() {
+    for (settings, settled) in [("(strand: (hop_limit: 3))", true), ("(strand: (hop_limit: 2))", false)] {
+        let bench = joined(&gossip(settings), strand(FREE, &[8, 9, WORKER]));
+        assert_eq!(is_settled(&bench), settled, "{settings}");
+    }
+}
+
+#[test]
+fn a_status_that_does_not_change_is_said_again_only_after_the_longest_pause() {
+    let mut bench = Bench::with(&gossip("(status: (send: OnChange(max_interval: 0.4)))"), FREE, 0.7);
+    let said = |output: &Output<Message>| {
+        output
+            .broadcasts
+            .iter()
+            .any(|message| matches!(message, Message::Status(_)))
+    };
+    let quiet: Vec<bool> = (0..8).map(|_| said(&bench.step(&company()))).collect();
+    assert_eq!(quiet, [true, false, false, false, true, false, false, false]);
+    let [root, worker] = company();
+    let joined = bench.step(&[root, worker, (WORKER, 1.2, join(FREE, 1))]);
+    assert!(said(&joined) && !said(&bench.step(&company())), "its new role is news");
+}
+
+#[test]
+fn an_order_is_passed_on_as_often_as_asked_and_a_newer_one_begins_anew() {
+    // Five robots or fewer: a multiplier of 3 makes 3 messages.
+    let settings = gossip("(relay: (interval: 0.1, retransmit: Multiplier(3)))");
+    let order = |epoch| Order {
+        epoch,
+        dismantled: TargetSet::default(),
+    };
+    let mut bench = Bench::with(&settings, WORKER, 1.2);
+    let passed_on = |bench: &mut Bench, epoch| {
+        let heard = (ROOT, 0.0, Message::Request(Request::Order(order(epoch))));
+        let step = |_| requests(&bench.step(std::slice::from_ref(&heard)));
+        let sent = (0..6)
+            .map(step)
+            .map(|requests| requests.contains(&Request::Order(order(epoch))));
+        sent.filter(|sent| *sent).count()
+    };
+    assert_eq!([passed_on(&mut bench, 1), passed_on(&mut bench, 2)], [3, 3]);
+    let old = bench.step(&[(ROOT, 0.0, Message::Request(Request::Order(order(1))))]);
+    let duplicate = Note::Duplicate {
+        topic: Topic(1),
+        size: MessageSize::alone(4),
+    };
+    assert!(old.notes.contains(&duplicate), "an order that was had is heard in vain");
+}

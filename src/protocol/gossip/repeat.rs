@@ -1,0 +1,150 @@
+//! What is sent when a topic has its turn: what there is to say, or only what has changed.
+
+use crate::engine::Span;
+
+use super::config::SendConfig;
+use super::turns::Timing;
+
+/// When a message is said again, in working units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Repetition {
+    /// Turns in a row in which something new is said.
+    times: u32,
+    /// Turns after which it is said again though nothing is new; 1: at every turn.
+    refresh: u64,
+    timing: Timing,
+}
+
+impl Repetition {
+    /// For a topic with this rhythm.
+    #[must_use]
+    pub fn new(send: SendConfig, timing: Timing, control_period: Span) -> Self {
+        let (times, refresh) = match send {
+            SendConfig::Always => (1, 1),
+            SendConfig::OnChange {
+                max_interval,
+                repetition,
+            } => {
+                let steps = Span::from_secs(max_interval.get()).as_nanos() / control_period.as_nanos().max(1);
+                (repetition, (steps / timing.every()).max(1))
+            }
+        };
+        Self {
+            times: times.max(1),
+            refresh,
+            timing,
+        }
+    }
+
+    /// Most control steps from a broadcast to the next, whatever there is to say.
+    #[must_use]
+    pub const fn longest_pause(self) -> u64 {
+        self.timing.every() * (self.refresh - 1) + self.timing.longest()
+    }
+}
+
+/// What a robot last said on a topic.
+#[derive(Debug)]
+pub struct Repeat<M> {
+    last: Option<M>,
+    /// Turns in which it is still to be said.
+    left: u32,
+    /// Turns since it was said.
+    silent: u64,
+}
+
+impl<M> Default for Repeat<M> {
+    fn default() -> Self {
+        Self {
+            last: None,
+            left: 0,
+            silent: 0,
+        }
+    }
+}
+
+impl<M: PartialEq> Repeat<M> {
+    /// Whether `message` is to be sent at this turn; to be asked at every turn.
+    pub fn is_due(&mut self, repetition: Repetition, message: &M) -> bool
+    where
+        M: Clone,
+    {
+        if repetition.refresh == 1 {
+            return true;
+        }
+        if self.last.as_ref() != Some(message) {
+            self.last = Some(message.clone());
+            self.left = repetition.times;
+        }
+        self.silent += 1;
+        let due = self.left > 0 || self.silent >= repetition.refresh;
+        if due {
+            self.left = self.left.saturating_sub(1);
+            self.silent = 0;
+        }
+        due
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quantity::{Positive, Probability};
+    use proptest::prelude::*;
+
+    const STEP: Span = Span::from_nanos(100_000_000);
+
+    fn on_change(interval: f64, max_interval: f64, repetition: u32) -> Repetition {
+        let timing = Timing::new(Positive::new(interval), Probability::new(0.0), STEP);
+        let send = SendConfig::OnChange {
+            max_interval: Positive::new(max_interval),
+            repetition,
+        };
+        Repetition::new(send, timing, STEP)
+    }
+
+    fn sent(repetition: Repetition, said: &str) -> String {
+        let mut repeat = Repeat::default();
+        let send = |word: char| if repeat.is_due(repetition, &word) { word } else { '.' };
+        said.chars().map(send).collect()
+    }
+
+    #[test]
+    fn what_is_new_is_said_at_once_and_what_is_old_after_the_longest_pause() {
+        assert_eq!(sent(on_change(0.1, 0.4, 1), "aaaaaaaabbbbbb"), "a...a...b...b.");
+        assert_eq!(sent(on_change(0.1, 0.1, 1), "aaa"), "aaa");
+    }
+
+    #[test]
+    fn what_is_new_is_said_as_many_times_as_asked_and_a_newer_word_begins_anew() {
+        assert_eq!(sent(on_change(0.1, 0.5, 3), "aaaaaaaabbcccccccc"), "aaa....abbccc....c");
+    }
+
+    #[test]
+    fn a_longest_pause_between_two_turns_is_rounded_down_to_the_earlier() {
+        let repetition = on_change(0.3, 1.0, 1);
+        assert_eq!(repetition.longest_pause(), 9);
+        assert_eq!(sent(repetition, "aaaaaaa"), "a..a..a", "a turn every 0.3 s");
+    }
+
+    proptest! {
+        #[test]
+        fn no_pause_is_longer_than_stated_and_no_change_is_missed(
+            words in prop::collection::vec(0_u8..3, 1..60), max in 1_u32..8, times in 1_u32..4,
+        ) {
+            let repetition = on_change(0.1, f64::from(max) / 10.0, times);
+            let mut repeat = Repeat::default();
+            let mut heard = None;
+            let mut pause = 0;
+            for word in words {
+                pause += 1;
+                if repeat.is_due(repetition, &word) {
+                    heard = Some(word);
+                    pause = 0;
+                }
+                prop_assert!(pause < repetition.longest_pause());
+                prop_assert_eq!(heard, Some(word));
+            }
+        }
+    }
+}
