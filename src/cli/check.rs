@@ -62,12 +62,7 @@ pub fn check(files: &[PathBuf], overrides: &[String], say: Say, out: &mut dyn Wr
         Say::Expected => {
             let colour = style(&io::stdout()).colour;
             for (index, (question, scenario)) in scenarios().enumerate() {
-                let apart = if index > 0 {
-                    "
-"
-                } else {
-                    ""
-                };
+                let apart = if index > 0 { "\n" } else { "" };
                 let text = report::preflight(&Preflight::of(scenario), question.as_deref(), colour);
                 write!(out, "{apart}{text}")?;
             }

@@ -254,11 +254,13 @@ fn variance(values: &[f64]) -> Option<f64> {
 
 impl Plan {
     fn of(size: f64, deviation: f64, alpha: f64) -> Option<Self> {
+        // Fewer pairs have no permutation rare enough for the level: of n pairs, 2 of 2ⁿ are as extreme as the most extreme one.
+        let fewest = (2.0 / alpha).log2().ceil() as u64;
         Some(Self {
             size,
             power: POWER,
             alpha,
-            trials: trials_needed(size, deviation, alpha)?,
+            trials: trials_needed(size, deviation, alpha)?.max(fewest),
         })
     }
 }

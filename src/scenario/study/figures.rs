@@ -25,7 +25,7 @@ pub fn common(plan: &Plan) -> Vec<String> {
 
 /// What two scenarios are compared by where nobody says: what the mission takes, what it costs, what arrives, who is mistaken.
 pub fn usual(plan: &Plan) -> Vec<String> {
-    let has_mission = |setting: &super::Setting| matches!(setting.scenario.protocol, ProtocolConfig::Backbone(_));
+    let has_mission = |setting: &super::Setting| !matches!(setting.scenario.protocol, ProtocolConfig::Heartbeat);
     let mission = plan.settings.iter().all(has_mission);
     let keys = [
         "steps_to_completion",
