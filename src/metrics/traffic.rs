@@ -43,9 +43,16 @@ impl Ledger {
         count.frames += 1;
         count.payload_bytes += u64::from(size.payload_bytes);
         if size.rides {
-            self.riders.resize(self.counts.len(), 0);
-            self.riders[cell] += 1;
+            self.add_rider(cell);
         }
+    }
+
+    // Apart: what every reception runs through stays small.
+    #[cold]
+    #[inline(never)]
+    fn add_rider(&mut self, cell: usize) {
+        self.riders.resize(self.counts.len(), 0);
+        self.riders[cell] += 1;
     }
 
     fn count(&self, cell: usize) -> Count {

@@ -113,13 +113,17 @@ impl<P: Protocol> Air<P> {
         }
         for message in messages {
             let frame = self.encode(now, sender, message, recorder, digest)?;
-            self.aboard.push(frame);
-            if !self.piggyback {
-                self.transmit(now, sender, faults, recorder);
+            if self.piggyback {
+                self.aboard.push(frame);
+            } else {
+                self.transmit(now, std::slice::from_ref(&frame), faults, recorder);
             }
         }
         if !self.aboard.is_empty() {
-            self.transmit(now, sender, faults, recorder);
+            let mut aboard = std::mem::take(&mut self.aboard);
+            self.transmit(now, &aboard, faults, recorder);
+            aboard.clear();
+            self.aboard = aboard;
         }
         if let Some(trace) = recorder.trace_of(sender) {
             trace.distances(now, distances(now, sender, self.inboxes.len(), world));
@@ -166,15 +170,18 @@ impl<P: Protocol> Air<P> {
         })
     }
 
-    /// Transmits the messages aboard as one frame: at each receiver they share one fate.
-    fn transmit(&mut self, now: SimTime, sender: ActorId, faults: &Faults, recorder: &mut Recorder) {
+    /// Transmits the messages `aboard`, one at least and all of one sender, as one frame: at each receiver they share one fate.
+    // Inlined where a frame has one message, nearly always, the loops over what is aboard are gone.
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn transmit(&mut self, now: SimTime, aboard: &[Frame<P::Message>], faults: &Faults, recorder: &mut Recorder) {
+        let sender = aboard[0].sender;
         if !self.hindrances.is_empty() {
-            self.hinder(sender, faults, recorder);
+            self.hinder(aboard, faults, recorder);
         }
         let Self {
             medium,
             arrivals,
-            aboard,
             listeners,
             reachable,
             hindrances,
@@ -188,14 +195,14 @@ impl<P: Protocol> Air<P> {
                 displacement,
             }),
             Fate::Lost(cause) => {
-                for frame in &*aboard {
+                for frame in aboard {
                     record_loss::<P>(receiver, frame, cause, recorder);
                 }
             }
         });
         if let Some(trace) = recorder.trace_of(sender) {
             let is_status = |frame: &&Frame<P::Message>| P::STATUS == Some(P::topic(&frame.message));
-            for frame in self.aboard.iter().filter(is_status) {
+            for frame in aboard.iter().filter(is_status) {
                 for arrival in &self.arrivals {
                     trace.fate(frame.sequence, arrival.receiver, CopyFate::Arrives(arrival.at));
                 }
@@ -206,7 +213,7 @@ impl<P: Protocol> Air<P> {
                 self.reached.push(arrival.receiver);
             }
             let inbox = &mut self.inboxes[arrival.receiver.index()];
-            for frame in &self.aboard {
+            for frame in aboard {
                 inbox.push(Reception {
                     at: arrival.at,
                     frame: frame.clone(),
@@ -214,16 +221,16 @@ impl<P: Protocol> Air<P> {
                 });
             }
         }
-        self.aboard.clear();
     }
 
     /// Finds the listeners that the frame reaches in spite of the faults of links; the other copies are lost.
-    fn hinder(&mut self, sender: ActorId, faults: &Faults, recorder: &mut Recorder) {
+    fn hinder(&mut self, aboard: &[Frame<P::Message>], faults: &Faults, recorder: &mut Recorder) {
+        let sender = aboard[0].sender;
         self.reachable.clear();
         let number = self.medium.upcoming(sender);
         for (listener, &loss) in self.listeners.iter().zip(&self.hindrances) {
             if faults.stops(loss, sender, listener.id, number) {
-                for frame in &self.aboard {
+                for frame in aboard {
                     record_loss::<P>(listener.id, frame, LossCause::LinkFault, recorder);
                 }
             } else {
