@@ -14,6 +14,7 @@ use super::statistics::{Part, quantile};
 use super::summary::detection::{detection_times, durations, mistakes};
 use super::summary::faults::mending;
 use super::summary::frames::delivery_ratio;
+use super::summary::spread::{duplicate_ratio, informed_ratio};
 use super::summary::{DIMENSIONLESS, SECONDS, STEPS, Unit, completion};
 use crate::engine::Span;
 
@@ -91,6 +92,7 @@ impl Registry {
         registry.bandwidth(topics);
         registry.detection();
         registry.healing();
+        registry.gossip();
         registry
     }
 
@@ -246,6 +248,19 @@ impl Registry {
         self.add_ratio("detection.query_accuracy", "query accuracy P_A", share, |record| {
             let seen = &record.detection;
             [seen.monitored_s - seen.mistaken_s, seen.monitored_s]
+        });
+    }
+
+    fn gossip(&mut self) {
+        let (more, less) = ((DIMENSIONLESS, Better::Higher), (DIMENSIONLESS, Better::Lower));
+        self.add_plain(
+            "spread.informed_ratio",
+            "robots informed at the end",
+            more,
+            informed_ratio,
+        );
+        self.add_plain("duplicates", "duplicates in messages delivered", less, |record| {
+            duplicate_ratio(record, |_| true)
         });
     }
 

@@ -11,19 +11,23 @@ pub fn section(page: &mut Page, surprises: &[Surprise]) {
         return;
     }
     page.heading("Not as predicted (see `desim check --predict`)");
-    for Surprise {
+    for surprise in surprises {
+        page.item(&words(surprise));
+    }
+}
+
+/// What is not as predicted, in words.
+pub fn words(surprise: &Surprise) -> String {
+    let Surprise {
         predicted,
         measured,
         why,
-    } in surprises
-    {
-        let write = |value| in_unit(value, predicted.unit);
-        let words = format!(
-            "{} {}, predicted {}: {why}",
-            predicted.what,
-            estimate(measured, write),
-            write(predicted.value)
-        );
-        page.item(&words);
-    }
+    } = surprise;
+    let write = |value| in_unit(value, predicted.unit);
+    format!(
+        "{} {}, predicted {}: {why}",
+        predicted.what,
+        estimate(measured, write),
+        write(predicted.value)
+    )
 }

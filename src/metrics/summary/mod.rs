@@ -7,7 +7,7 @@ pub(super) mod detection;
 pub(super) mod faults;
 pub(super) mod frames;
 mod quantity;
-mod spread;
+pub(super) mod spread;
 
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
 pub use detection::{Detection, Failures, Suspicions};

@@ -35,10 +35,9 @@ impl SpreadSummary {
     /// How rumours spread in `records`; `None` if there were none.
     pub(super) fn of(records: &[TrialRecord]) -> Option<Self> {
         let trials: Vec<Pairs> = records.iter().filter_map(Pairs::of).collect();
-        let informed = |trial: &Pairs| trial.times.len() as f64 / trial.count.max(1) as f64;
         (!trials.is_empty()).then(|| Self {
             informed_ratio: Measured {
-                estimate: mean(&trials.iter().map(informed).collect::<Vec<_>>()),
+                estimate: mean(&trials.iter().map(Pairs::informed_ratio).collect::<Vec<_>>()),
                 unit: DIMENSIONLESS.into(),
             },
             time_to_half: SpreadTime::of(&trials, |count| count.div_ceil(2)),
@@ -72,6 +71,25 @@ impl Pairs {
             end: record.simulated,
         })
     }
+}
+
+impl Pairs {
+    fn informed_ratio(&self) -> f64 {
+        self.times.len() as f64 / self.count.max(1) as f64
+    }
+}
+
+/// The share of all pairs of a robot and a rumour in which the robot knew the rumour at the end of a trial; `None` without rumours.
+pub(in crate::metrics) fn informed_ratio(record: &TrialRecord) -> Option<f64> {
+    Pairs::of(record).map(|pairs| pairs.informed_ratio())
+}
+
+/// Duplicates in the messages delivered in a trial, of the rows of traffic that `counts` accepts; `None` if nothing was.
+pub(in crate::metrics) fn duplicate_ratio(record: &TrialRecord, counts: impl Fn(&TrafficRow) -> bool) -> Option<f64> {
+    let rows = || record.traffic.iter().filter(|row| counts(row));
+    let received: u64 = rows().map(|row| row.received.frames).sum();
+    let duplicate: u64 = rows().map(|row| row.duplicate.frames).sum();
+    (received > 0).then(|| duplicate as f64 / received as f64)
 }
 
 impl SpreadTime {
@@ -113,14 +131,8 @@ impl Duplicates {
     pub(super) fn of(topics: &[&str], records: &[TrialRecord]) -> Option<Self> {
         let mut rows = records.iter().flat_map(|record| &record.traffic);
         let any = rows.any(|row| row.duplicate.frames > 0);
-        let share = |counts: &dyn Fn(&TrafficRow) -> bool| {
-            mean_over_trials(records, |record| {
-                let rows = || record.traffic.iter().filter(|row| counts(row));
-                let received: u64 = rows().map(|row| row.received.frames).sum();
-                let duplicate: u64 = rows().map(|row| row.duplicate.frames).sum();
-                (received > 0).then(|| duplicate as f64 / received as f64)
-            })
-        };
+        let share =
+            |counts: &dyn Fn(&TrafficRow) -> bool| mean_over_trials(records, |record| duplicate_ratio(record, counts));
         any.then(|| Self {
             total: share(&|_| true),
             by_topic: Named::of(topics.iter().copied(), |topic| {

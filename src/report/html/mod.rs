@@ -10,6 +10,7 @@ mod connectivity;
 mod data;
 mod detection;
 mod figure;
+mod gossip;
 mod map;
 mod mission;
 mod overview;

@@ -3,7 +3,9 @@
 use super::PageInput;
 use super::detection;
 use crate::metrics::summary::Spread;
+use crate::predict;
 use crate::report::number::{self, count, estimate, figure, percent, seconds};
+use crate::report::surprises;
 
 /// What was found, a name and a value each.
 pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
@@ -53,5 +55,18 @@ pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
         ));
     }
     rows.extend(detection::quality(input));
+    if let Some(spread) = &summary.spread {
+        let informed = estimate(&spread.informed_ratio.estimate, percent);
+        rows.push(("pairs of a robot and a rumour informed at the end", informed));
+        let time = estimate(&spread.time_to_all.median, seconds);
+        rows.push(("until all were, Kaplan–Meier median", time));
+    }
+    if let Some(duplicates) = &summary.duplicates {
+        let share = estimate(&duplicates.total, percent);
+        rows.push(("duplicates in the messages delivered", share));
+    }
+    for surprise in predict::surprises(input.scenario, summary) {
+        rows.push(("not as predicted", surprises::words(&surprise)));
+    }
     rows
 }

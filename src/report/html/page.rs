@@ -4,7 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plotly::Plot;
 
 use super::figure::Figure;
-use super::{PageInput, bandwidth, connectivity, detection, map, mission, overview, radio, robots, series};
+use super::{PageInput, bandwidth, connectivity, detection, gossip, map, mission, overview, radio, robots, series};
 use crate::report::number::{count, seconds};
 use crate::scenario::to_ron;
 
@@ -91,7 +91,11 @@ fn chart_script() -> String {
 
 fn sections(input: &PageInput) -> Vec<Section> {
     let all: [(&str, &str, Vec<Option<Figure>>); 6] = [
-        ("mission", "Mission", vec![mission::completion(input)]),
+        (
+            "mission",
+            "Mission",
+            vec![mission::completion(input), gossip::spread(input)],
+        ),
         (
             "bandwidth",
             "Bandwidth",
@@ -106,7 +110,15 @@ fn sections(input: &PageInput) -> Vec<Section> {
                 Some(bandwidth::headers(input)),
             ],
         ),
-        ("radio", "Radio", vec![Some(radio::lost(input)), radio::latency(input)]),
+        (
+            "radio",
+            "Radio",
+            vec![
+                Some(radio::lost(input)),
+                radio::latency(input),
+                gossip::duplicates(input),
+            ],
+        ),
         (
             "graph",
             "Connectivity",

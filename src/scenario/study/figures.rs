@@ -25,19 +25,19 @@ pub fn common(plan: &Plan) -> Vec<String> {
 
 /// What two scenarios are compared by where nobody says: what the mission takes, what it costs, what arrives, who is mistaken.
 pub fn usual(plan: &Plan) -> Vec<String> {
-    let has_mission = |setting: &super::Setting| !matches!(setting.scenario.protocol, ProtocolConfig::Heartbeat);
-    let mission = plan.settings.iter().all(has_mission);
+    let all = |has: fn(&ProtocolConfig) -> bool| plan.settings.iter().all(|setting| has(&setting.scenario.protocol));
+    let mission = all(|protocol| !matches!(protocol, ProtocolConfig::Heartbeat));
+    let detector = all(|protocol| !matches!(protocol, ProtocolConfig::Rumor(_)));
     let keys = [
-        "steps_to_completion",
-        "bandwidth.tx_bytes_per_step.mean",
-        "bandwidth.rx_bytes_per_step.mean",
-        "delivery_ratio",
-        "detection.mistake_rate_hz",
+        ("steps_to_completion", mission),
+        ("bandwidth.tx_bytes_per_step.mean", true),
+        ("bandwidth.rx_bytes_per_step.mean", true),
+        ("delivery_ratio", true),
+        ("detection.mistake_rate_hz", detector),
+        ("duplicates", !detector),
     ];
-    keys.into_iter()
-        .skip(usize::from(!mission))
-        .map(str::to_owned)
-        .collect()
+    let apt = keys.into_iter().filter(|(_, is_apt)| *is_apt);
+    apt.map(|(key, _)| key.to_owned()).collect()
 }
 
 /// Says that a figure is not known, and which may be meant.
