@@ -3,7 +3,7 @@
 
     python analysis/check_examples.py FOLDER
 
-FOLDER holds `results/loss20` and `results/crash_and_recover`. Blocks in R are run where there is R, and said to be left out where there is
+FOLDER holds `results/loss20`, `results/crash_and_recover` and the study `results/status_interval`. Blocks in R are run where there is R, and said to be left out where there is
 none. DuckDB's command line must be beside the Python that runs this, or on the path.
 """
 
@@ -25,13 +25,17 @@ TOLERANCE = 1e-3
 """Tables round what they print."""
 
 
+def blocks(text):
+    """(language, code) of each block."""
+    return re.findall(r"^```(python|sql|r)\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL)
+
+
 def examples(text):
     """(question, language, code) of each block under a question; blocks before the first one are put before those of their language."""
     preludes = {}
     for section in re.split(r"^### ", text, flags=re.MULTILINE):
         question, _, body = section.partition("\n")
-        blocks = re.findall(r"^```(python|sql|r)\n(.*?)^```", body.split("\n## Checking")[0], flags=re.MULTILINE | re.DOTALL)
-        for language, code in blocks:
+        for language, code in blocks(body.split("\n## Checking")[0]):
             if question.endswith("?"):
                 yield question, language, preludes.get(language, "") + code
             else:
@@ -79,7 +83,12 @@ def main(arguments):
         return 2
     folder = pathlib.Path(arguments[0])
     figures, status, ran = expected(folder), 0, 0
-    for question, language, code in examples(README.read_text(encoding="utf-8")):
+    described, reading = README.read_text(encoding="utf-8").split("\n## Reading them\n")
+    for language, code in blocks(described):
+        printed, failure = run(language, code, folder)
+        print(f"{code.splitlines()[1]}: {failure or 'runs'}")
+        status = 1 if failure or not printed else status
+    for question, language, code in examples(reading):
         if language == "r" and shutil.which("Rscript") is None:
             print(f"{question} {language}: left out, there is no R here")
             continue
