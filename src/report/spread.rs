@@ -12,7 +12,10 @@ pub fn section(page: &mut Page, summary: &Summary) {
     };
     page.heading("Spread of rumours");
     let informed = estimate(&spread.informed_ratio.estimate, percent);
-    page.entry("informed", &format!("{informed} of pairs of a robot and a rumour at the end"));
+    page.entry(
+        "informed",
+        &format!("{informed} of pairs of a robot and a rumour at the end"),
+    );
     for (name, time) in [("half after", &spread.time_to_half), ("all after", &spread.time_to_all)] {
         page.entry(name, &took(time));
     }
