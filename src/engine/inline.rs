@@ -1,6 +1,7 @@
 //! The inline driver: an actor is a direct call.
 
-use super::process::{Driver, JobOf, Process};
+use super::prefetch::prefetch;
+use super::process::{ActorId, Driver, JobOf, Process};
 
 /// Calls each actor in turn on the caller's stack.
 #[derive(Debug)]
@@ -17,6 +18,16 @@ impl<P> Inline<P> {
 }
 
 impl<P: Process> Driver<P> for Inline<P> {
+    #[inline]
+    fn prefetch_row(&self, actor: ActorId) {
+        prefetch(&self.processes[actor.index()]);
+    }
+
+    #[inline]
+    fn prefetch_contents(&self, actor: ActorId) {
+        self.processes[actor.index()].prefetch();
+    }
+
     async fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) {
         for job in jobs {
             self.processes[job.actor.index()].handle(job.now, &mut job.input, &mut job.output);

@@ -2,6 +2,7 @@
 
 mod actors;
 mod inline;
+mod prefetch;
 mod process;
 mod queue;
 mod random;
@@ -10,6 +11,7 @@ mod time;
 
 pub use actors::Actors;
 pub use inline::Inline;
+pub use prefetch::{prefetch, prefetch_all, prefetch_end};
 pub use process::{ActorId, Driver, Job, JobOf, Process};
 pub use queue::{EventKey, EventQueue};
 pub use random::{KeyedStreams, Purpose, Streams};

@@ -30,6 +30,10 @@ pub trait Process {
     /// What it answers. Handed in empty, and reused from wake to wake.
     type Output;
 
+    /// Asks for the memory that the next step will read beside `self` ([`prefetch`](super::prefetch)): a hint, shortly before
+    /// that step, in a swarm that outgrows the cache.
+    fn prefetch(&self) {}
+
     /// Takes one step at instant `now`.
     fn handle(&mut self, now: SimTime, input: &mut Self::Input, output: &mut Self::Output);
 }
@@ -52,6 +56,16 @@ pub type JobOf<P> = Job<<P as Process>::Input, <P as Process>::Output>;
 
 /// Runs actors: takes their jobs to them and brings the answers back.
 pub trait Driver<P: Process> {
-    /// Handles `jobs`, at most one an actor and all at one instant, and leaves them in the order given.
+    /// Asks for the memory of `actor`, which is to wake soon, if it can be reached.
+    fn prefetch_row(&self, actor: ActorId) {
+        let _ = actor;
+    }
+
+    /// Asks for what `actor` keeps elsewhere, a while after its [row](Self::prefetch_row).
+    fn prefetch_contents(&self, actor: ActorId) {
+        let _ = actor;
+    }
+
+    /// Handles `jobs`, at most one an actor, and leaves them in the order given.
     fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) -> impl Future<Output = ()>;
 }

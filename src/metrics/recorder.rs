@@ -118,6 +118,24 @@ impl Recorder {
         }
     }
 
+    /// Asks for what the books have about `robot`, which is to wake soon.
+    pub fn prefetch_row(&self, robot: ActorId) {
+        self.traffic.prefetch_row(robot);
+        self.detection.prefetch_row(robot);
+    }
+
+    /// Asks for where its next entries go, a while after its [row](Self::prefetch_row).
+    pub fn prefetch_contents(&self, robot: ActorId) {
+        self.traffic.prefetch_contents(robot);
+        self.detection.prefetch_contents(robot);
+    }
+
+    /// Asks for where [`lost`](Self::lost) will count.
+    #[inline]
+    pub fn prefetch_lost(&self, receiver: ActorId, topic: Topic, cause: LossCause) {
+        self.traffic.prefetch_lost(receiver, topic, cause);
+    }
+
     /// `sender` transmitted a frame, however many robots hear it.
     #[inline]
     pub fn transmitted(&mut self, sender: ActorId, topic: Topic, size: MessageSize) {

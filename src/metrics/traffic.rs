@@ -1,6 +1,6 @@
 //! Messages and bytes by robot, role and topic: a table that a reception finds its cell in by two additions.
 
-use crate::engine::ActorId;
+use crate::engine::{ActorId, prefetch, prefetch_all};
 use crate::protocol::{MessageSize, Role, Topic};
 use crate::radio::LossCause;
 
@@ -122,6 +122,22 @@ impl Traffic {
             self.roles
         );
         self.starts[robot.index()] = ((robot.index() * self.roles + role) * self.topics) as u32;
+    }
+
+    pub(super) fn prefetch_row(&self, robot: ActorId) {
+        prefetch(&self.starts[robot.index()]);
+    }
+
+    pub(super) fn prefetch_contents(&self, robot: ActorId) {
+        let first = self.cell(robot, Topic(0));
+        for ledger in [&self.sent, &self.received] {
+            prefetch_all(&ledger.counts[first..first + self.topics]);
+        }
+    }
+
+    #[inline]
+    pub(super) fn prefetch_lost(&self, robot: ActorId, topic: Topic, cause: LossCause) {
+        prefetch(&self.lost[cause as usize].counts[self.cell(robot, topic)]);
     }
 
     #[inline]

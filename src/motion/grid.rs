@@ -1,5 +1,8 @@
 //! A uniform grid over moving points: who is within reach of a place, at an instant after it was built.
 
+use std::ops::Range;
+
+use crate::engine::prefetch_all;
 use crate::geometry::Vec2;
 
 /// Cells are allowed up to this many for each point, so that few points in a wide arena cost no memory.
@@ -68,8 +71,7 @@ impl Grid {
         let mut near = [0_u32; BATCH];
         let mut found = 0;
         for row in self.row(centre.y - reach)..=self.row(centre.y + reach) {
-            let first = self.starts[row * self.columns + left] as usize;
-            let end = self.starts[row * self.columns + right + 1] as usize;
+            let Range { start: first, end } = self.points(row, left, right);
             for (index, position) in (first..).zip(&self.positions[first..end]) {
                 near[found] = index as u32;
                 found += usize::from((position - centre).norm_squared() <= reach * reach);
@@ -96,6 +98,23 @@ impl Grid {
                 visit(self.ids[index], offset);
             }
         }
+    }
+
+    /// Asks for the points that a search reads.
+    pub(super) fn prefetch(&self, centre: Vec2, range: f64) {
+        let (left, right) = (self.column(centre.x - range), self.column(centre.x + range));
+        for row in self.row(centre.y - range)..=self.row(centre.y + range) {
+            let points = self.points(row, left, right);
+            prefetch_all(&self.positions[points.clone()]);
+            prefetch_all(&self.ids[points]);
+        }
+    }
+
+    /// The points of one row, from column `left` to column `right`.
+    #[inline]
+    fn points(&self, row: usize, left: usize, right: usize) -> Range<usize> {
+        let cell = row * self.columns;
+        self.starts[cell + left] as usize..self.starts[cell + right + 1] as usize
     }
 
     fn column(&self, x: f64) -> usize {

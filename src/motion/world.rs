@@ -5,7 +5,7 @@ use super::config::{ArenaConfig, MotionConfig};
 use super::contact::Contacts;
 use super::drive::{Chassis, Drive};
 use super::grid::Grid;
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, prefetch};
 use crate::geometry::{Pose, Vec2};
 
 /// The least distance that proximity reports, in metres: what touches still has a direction.
@@ -123,6 +123,17 @@ impl World {
         if moved || self.moving {
             self.index();
         }
+    }
+
+    /// Asks for where robot `id` is.
+    pub fn prefetch_row(&self, id: ActorId) {
+        prefetch(&self.positions[id.index()]);
+        prefetch(&self.drives[id.index()]);
+    }
+
+    /// Asks for what a search within `range` metres of robot `id` will read.
+    pub fn prefetch_neighbours(&self, id: ActorId, range: f64) {
+        self.neighbours.prefetch(self.positions[id.index()], range);
     }
 
     /// Where robot `id` is at instant `at`, from the last tick to the next; metres from the arena's centre.

@@ -129,6 +129,10 @@ impl<P: Carried> Protocol for Heartbeat<P> {
         })
     }
 
+    fn prefetch(&self) {
+        self.detector.prefetch();
+    }
+
     fn step(&mut self, now: SimTime, input: &mut Input<Message<P>>, output: &mut Output<Message<P>>) {
         self.detector.read(now, &input.inbox, output);
         match input.wake {

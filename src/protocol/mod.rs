@@ -66,6 +66,9 @@ pub trait Protocol: Sized + 'static {
         Topic(0)
     }
 
+    /// Asks for the memory that the next step will read beside `self` ([`Process::prefetch`]).
+    fn prefetch(&self) {}
+
     /// Takes one step: reads `input`, fills `output`.
     fn step(&mut self, now: SimTime, input: &mut Input<Self::Message>, output: &mut Output<Self::Message>);
 }
@@ -272,6 +275,10 @@ pub struct Robot<P>(pub P);
 impl<P: Protocol> Process for Robot<P> {
     type Input = Input<P::Message>;
     type Output = Output<P::Message>;
+
+    fn prefetch(&self) {
+        self.0.prefetch();
+    }
 
     fn handle(&mut self, now: SimTime, input: &mut Self::Input, output: &mut Self::Output) {
         self.0.step(now, input, output);

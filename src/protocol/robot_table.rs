@@ -1,6 +1,6 @@
 //! What one robot knows of others: a row each.
 
-use crate::engine::ActorId;
+use crate::engine::{ActorId, prefetch_all};
 
 /// What is known of a robot.
 pub trait RobotRow {
@@ -60,6 +60,13 @@ impl<R: RobotRow> RobotTable<R> {
         let slot = self.slot_of(row.robot());
         self.slots[slot] = self.rows.len() as u32;
         self.rows.push(row);
+    }
+
+    /// Asks for its memory.
+    #[inline]
+    pub fn prefetch(&self) {
+        prefetch_all(&self.slots);
+        prefetch_all(&self.rows);
     }
 
     /// All rows.

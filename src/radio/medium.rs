@@ -6,7 +6,7 @@ use super::latency::Latency;
 use super::loss::Loss;
 use super::sensing::Sensing;
 use super::{Fate, Listener, LossCause};
-use crate::engine::{ActorId, KeyedStreams, SimTime, Span, Streams};
+use crate::engine::{ActorId, KeyedStreams, SimTime, Span, Streams, prefetch};
 
 /// The radio of one run: settles the fate of every copy of every frame.
 #[derive(Debug)]
@@ -52,6 +52,11 @@ impl Medium {
     #[must_use]
     pub fn range(&self) -> f64 {
         self.range
+    }
+
+    /// Asks for the memory of `sender`, which is to transmit soon.
+    pub fn prefetch_row(&self, sender: ActorId) {
+        prefetch(&self.sequences[sender.index()]);
     }
 
     /// The number that the next frame of `sender` will have.

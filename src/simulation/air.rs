@@ -6,7 +6,7 @@ use tokio_util::codec::{Decoder, Encoder};
 use super::digest::Digest;
 use super::error::RunError;
 use super::inbox::Inbox;
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, prefetch};
 use crate::faults::Faults;
 use crate::metrics::Recorder;
 use crate::metrics::detection::CopyFate;
@@ -49,6 +49,8 @@ pub struct Air<P: Protocol> {
     /// The copies of the present frame that will arrive. Fates are decided first and inboxes filled after: the one is
     /// arithmetic, the other waits for memory, and apart each runs at its own pace.
     arrivals: Vec<Arrival>,
+    /// Those that will not, and why.
+    losses: Vec<(ActorId, LossCause)>,
     /// Which listeners the faults of links hinder, and with what probability; empty where nothing is wrong with links.
     hindrances: Vec<f64>,
     /// The listeners that the present frame reaches in spite of the faults of links.
@@ -76,6 +78,7 @@ impl<P: Protocol> Air<P> {
             piggyback,
             sequences: vec![0; robots],
             arrivals: Vec::new(),
+            losses: Vec::new(),
             hindrances: Vec::new(),
             reachable: Vec::new(),
             deaf_since: vec![SimTime::NEVER; robots],
@@ -83,6 +86,19 @@ impl<P: Protocol> Air<P> {
             reached: Vec::new(),
             tell_reached: wake_on_reception,
         }
+    }
+
+    /// Asks for what is kept of `robot`, which is to wake soon.
+    pub fn prefetch_row(&self, robot: ActorId) {
+        prefetch(&self.inboxes[robot.index()]);
+        prefetch(&self.sequences[robot.index()]);
+        self.medium.prefetch_row(robot);
+    }
+
+    /// Asks for what waits for `robot`, and for who will hear it.
+    pub fn prefetch_contents(&self, robot: ActorId, world: &World) {
+        self.inboxes[robot.index()].prefetch_contents();
+        world.prefetch_neighbours(robot, self.medium.range());
     }
 
     /// Broadcasts `messages`, which `sender` sends at `now`.
@@ -97,8 +113,9 @@ impl<P: Protocol> Air<P> {
     ) -> Result<(), RunError> {
         let Surroundings { world, faults } = place;
         self.listeners.clear();
-        let listeners = &mut self.listeners;
+        let Self { listeners, inboxes, .. } = self;
         world.for_each_within(sender, now, self.medium.range(), |id, from_sender| {
+            prefetch(&inboxes[id.index()]);
             listeners.push(Listener {
                 id,
                 sender: -from_sender,
@@ -177,11 +194,12 @@ impl<P: Protocol> Air<P> {
     fn transmit(&mut self, now: SimTime, aboard: &[Frame<P::Message>], faults: &Faults, recorder: &mut Recorder) {
         let sender = aboard[0].sender;
         if !self.hindrances.is_empty() {
-            self.hinder(aboard, faults, recorder);
+            self.hinder(sender, faults);
         }
         let Self {
             medium,
             arrivals,
+            losses,
             listeners,
             reachable,
             hindrances,
@@ -194,12 +212,20 @@ impl<P: Protocol> Air<P> {
                 at,
                 displacement,
             }),
-            Fate::Lost(cause) => {
-                for frame in aboard {
-                    record_loss::<P>(receiver, frame, cause, recorder);
-                }
-            }
+            Fate::Lost(cause) => losses.push((receiver, cause)),
         });
+        let topic = P::topic(&aboard[0].message);
+        for arrival in &self.arrivals {
+            self.inboxes[arrival.receiver.index()].prefetch_end();
+        }
+        for &(receiver, cause) in &self.losses {
+            recorder.prefetch_lost(receiver, topic, cause);
+        }
+        for (receiver, cause) in self.losses.drain(..) {
+            for frame in aboard {
+                record_loss::<P>(receiver, frame, cause, recorder);
+            }
+        }
         if let Some(trace) = recorder.trace_of(sender) {
             let is_status = |frame: &&Frame<P::Message>| P::STATUS == Some(P::topic(&frame.message));
             for frame in aboard.iter().filter(is_status) {
@@ -224,15 +250,12 @@ impl<P: Protocol> Air<P> {
     }
 
     /// Finds the listeners that the frame reaches in spite of the faults of links; the other copies are lost.
-    fn hinder(&mut self, aboard: &[Frame<P::Message>], faults: &Faults, recorder: &mut Recorder) {
-        let sender = aboard[0].sender;
+    fn hinder(&mut self, sender: ActorId, faults: &Faults) {
         self.reachable.clear();
         let number = self.medium.upcoming(sender);
         for (listener, &loss) in self.listeners.iter().zip(&self.hindrances) {
             if faults.stops(loss, sender, listener.id, number) {
-                for frame in aboard {
-                    record_loss::<P>(listener.id, frame, LossCause::LinkFault, recorder);
-                }
+                self.losses.push((listener.id, LossCause::LinkFault));
             } else {
                 self.reachable.push(*listener);
             }

@@ -28,6 +28,13 @@ impl ControlSteps {
         self.ring.get(self.next).map_or(SimTime::NEVER, |step| step.0)
     }
 
+    /// The robot whose control step comes `steps` after the next, if the swarm has more than that.
+    pub fn ahead(&self, steps: usize) -> Option<ActorId> {
+        let place = self.next + steps;
+        let step = self.ring.get(place).or_else(|| self.ring.get(place - self.ring.len()))?;
+        Some(step.1)
+    }
+
     /// Takes the next control step if it is due at `now`: the robot whose it is.
     pub fn take_due(&mut self, now: SimTime) -> Option<ActorId> {
         let step = self.ring.get_mut(self.next).filter(|step| step.0 <= now)?;

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::engine::SimTime;
+use crate::engine::{SimTime, prefetch_all, prefetch_end};
 use crate::protocol::Reception;
 
 /// Frames on their way to one robot, and those that arrived since it last woke. Aligned so that none lies across two cache
@@ -25,6 +25,17 @@ impl<M> Default for Inbox<M> {
 }
 
 impl<M> Inbox<M> {
+    /// Asks for the memory of the next [`push`](Self::push).
+    #[inline]
+    pub fn prefetch_end(&self) {
+        prefetch_end(&self.waiting);
+    }
+
+    /// Asks for all that is waiting.
+    pub fn prefetch_contents(&self) {
+        prefetch_all(&self.waiting);
+    }
+
     /// Takes in a frame that will arrive at `reception.at`.
     #[inline]
     pub fn push(&mut self, reception: Reception<M>) {
@@ -34,10 +45,17 @@ impl<M> Inbox<M> {
 
     /// Moves what has arrived by `now` into the empty `arrived`, in order of arrival, then of sender and its sequence.
     pub fn take_arrived(&mut self, now: SimTime, arrived: &mut Vec<Reception<M>>) {
-        if self.latest <= now {
-            std::mem::swap(&mut self.waiting, arrived);
-        } else {
-            arrived.extend(self.waiting.extract_if(.., |reception| reception.at <= now));
+        std::mem::swap(&mut self.waiting, arrived);
+        if self.latest > now {
+            // Few are still under way when a robot wakes: they go back.
+            let mut next = 0;
+            while let Some(reception) = arrived.get(next) {
+                if reception.at > now {
+                    self.waiting.push(arrived.swap_remove(next));
+                } else {
+                    next += 1;
+                }
+            }
         }
         arrived.sort_unstable_by(arrival_order);
     }

@@ -6,7 +6,7 @@ use super::air::{Air, Surroundings};
 use super::clock::{Alarms, ControlSteps};
 use super::digest::Digest;
 use super::error::RunError;
-use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams};
+use crate::engine::{ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams, prefetch};
 use crate::faults::{Change, Faults, Health, Subject};
 use crate::geometry::Vec2;
 use crate::metrics::{Progress, Recorder, RunEnd, TrialRecord};
@@ -14,6 +14,10 @@ use crate::motion::World;
 use crate::protocol::{Input, Note, Output, Protocol, Robot, Wake};
 
 const ROBOT: Purpose = Purpose::new("protocol.robot");
+
+/// Control steps between asking for a robot's rows, or for what they point to, and its own.
+const ROWS_AHEAD: usize = 8;
+const CONTENTS_AHEAD: usize = 4;
 
 /// What can happen. Frames are not events: they wait in inboxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -190,6 +194,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     /// Wakes every robot that has a control step at `now`.
     async fn take_control_steps(&mut self, now: SimTime) -> Result<(), RunError> {
         while let Some(robot) = self.control_steps.take_due(now) {
+            self.look_ahead();
             if !self.faults.health(robot).acts {
                 continue;
             }
@@ -198,6 +203,22 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         }
         self.queue.schedule(Event::ControlSteps, self.control_steps.upcoming());
         self.dispatch().await
+    }
+
+    /// Asks for the memory that coming control steps will need: first for rows, then for what they point to.
+    fn look_ahead(&self) {
+        if let Some(robot) = self.control_steps.ahead(ROWS_AHEAD) {
+            prefetch(&self.wakes[robot.index()]);
+            self.world.prefetch_row(robot);
+            self.air.prefetch_row(robot);
+            self.recorder.prefetch_row(robot);
+            self.driver.prefetch_row(robot);
+        }
+        if let Some(robot) = self.control_steps.ahead(CONTENTS_AHEAD) {
+            self.air.prefetch_contents(robot, &self.world);
+            self.recorder.prefetch_contents(robot);
+            self.driver.prefetch_contents(robot);
+        }
     }
 
     /// Has the robots of the batch take their steps, and lets their answers take effect.

@@ -1,6 +1,6 @@
 //! What became of the statuses of late: kept so that a suspicion can be traced to them, and no longer.
 
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, prefetch, prefetch_end};
 use crate::protocol::Reception;
 use crate::radio::LossCause;
 
@@ -68,6 +68,18 @@ impl StatusLog {
             memory,
             senders: std::iter::repeat_with(Sender::default).take(robots).collect(),
         }
+    }
+
+    /// Asks for what is known of the statuses of `sender`.
+    pub fn prefetch_row(&self, sender: ActorId) {
+        prefetch(&self.senders[sender.index()]);
+    }
+
+    /// Asks for where the next ones go.
+    pub fn prefetch_contents(&self, sender: ActorId) {
+        let Sender { sent, lost, .. } = &self.senders[sender.index()];
+        prefetch_end(sent);
+        prefetch_end(lost);
     }
 
     /// `sender` sends a status, its frame number `sequence`.

@@ -65,6 +65,16 @@ impl Scorer {
         self.log.sent(now, sender, sequence);
     }
 
+    /// Asks for what is known of the statuses of `robot`.
+    pub fn prefetch_row(&self, robot: ActorId) {
+        self.log.prefetch_row(robot);
+    }
+
+    /// Asks for where the next ones go.
+    pub fn prefetch_contents(&self, robot: ActorId) {
+        self.log.prefetch_contents(robot);
+    }
+
     /// The copy of a status that was meant for `receiver` is lost.
     #[inline]
     pub fn lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {

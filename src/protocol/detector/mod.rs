@@ -110,6 +110,17 @@ impl Detector {
         }
     }
 
+    /// Asks for the memory that reading an inbox takes.
+    #[inline]
+    pub fn prefetch(&self) {
+        match self {
+            Self::Timeout(watch) => watch.prefetch(),
+            Self::NfdS(watch) => watch.prefetch(),
+            Self::PhiAccrual(watch) => watch.prefetch(),
+            Self::Swim(_) => {}
+        }
+    }
+
     /// Takes in what has arrived by `now`, in order of arrival, and answers what asks for an answer.
     #[inline]
     pub fn read<M: Monitored>(&mut self, now: SimTime, inbox: &[Reception<M>], output: &mut Output<M>) {

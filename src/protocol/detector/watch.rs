@@ -99,6 +99,12 @@ impl<R: Rule> Watch<R> {
         }
     }
 
+    /// Asks for its memory.
+    #[inline]
+    pub fn prefetch(&self) {
+        self.rows.prefetch();
+    }
+
     /// Takes in the statuses in `inbox`, which are in order of arrival.
     #[inline]
     pub fn read<M: Monitored>(&mut self, inbox: &[Reception<M>], output: &mut Output<M>) {

@@ -1,0 +1,64 @@
+//! Asking for memory before it is needed.
+//!
+//! In a swarm that outgrows the processor's cache nearly every wake finds its robot's state in main memory, a tenth of a
+//! microsecond away, and the simulator does little but wait. Which robots wake next is known, though, and so is who hears a
+//! frame before its fates are drawn: what is asked for then is there in time. At 20,480 robots this takes a third off the cost
+//! of a delivery; nothing depends on it, and where the processor has no such instruction it does nothing.
+
+/// Bytes that travel together between memory and cache.
+const LINE: usize = 64;
+
+/// Asks for `value`.
+#[inline]
+pub fn prefetch<T>(value: &T) {
+    lines(std::ptr::from_ref(value).cast(), size_of::<T>());
+}
+
+/// Asks for all of `values`.
+#[inline]
+pub fn prefetch_all<T>(values: &[T]) {
+    lines(values.as_ptr().cast(), size_of_val(values));
+}
+
+/// Asks for the place where the next push to `values` goes.
+#[inline]
+pub fn prefetch_end<T>(values: &Vec<T>) {
+    lines(values.as_ptr().wrapping_add(values.len()).cast(), size_of::<T>());
+}
+
+/// Asks for `bytes` bytes from `start` on.
+#[inline]
+fn lines(start: *const u8, bytes: usize) {
+    let before = start.addr() % LINE;
+    for line in 0..(before + bytes).div_ceil(LINE) {
+        line_at(start.wrapping_add(line * LINE));
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline]
+#[allow(unsafe_code)]
+fn line_at(place: *const u8) {
+    use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+    // SAFETY: a prefetch is a hint. It neither reads nor writes, and at an address that is nobody's it does nothing.
+    unsafe { _mm_prefetch::<_MM_HINT_T0>(place.cast()) }
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+#[inline]
+fn line_at(_: *const u8) {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn asking_for_nothing_for_much_and_past_the_end_is_harmless() {
+        prefetch(&());
+        prefetch(&[0_u8; 1000]);
+        prefetch_all::<u64>(&[]);
+        prefetch_all(&vec![0_u64; 1000]);
+        prefetch_end::<u64>(&Vec::new());
+        prefetch_end(&vec![0_u64; 8]);
+    }
+}
