@@ -11,7 +11,7 @@ mod time;
 
 pub use actors::Actors;
 pub use inline::Inline;
-pub use prefetch::{prefetch, prefetch_all, prefetch_end};
+pub use prefetch::{outgrows_cache, prefetch, prefetch_all, prefetch_end};
 pub use process::{ActorId, Driver, Job, JobOf, Process};
 pub use queue::{EventKey, EventQueue};
 pub use random::{KeyedStreams, Purpose, Streams};

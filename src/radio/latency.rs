@@ -44,6 +44,15 @@ impl Latency {
         }
     }
 
+    /// What no latency falls short of.
+    pub fn least(&self) -> Span {
+        match self.model {
+            Model::Constant(span) => span,
+            Model::Random(Law::Uniform { min, .. } | Law::Normal { min, .. }) => Span::from_secs(min),
+            Model::Random(Law::LogNormal { .. } | Law::Gamma(_) | Law::Exponential { .. }) => Span::ZERO,
+        }
+    }
+
     /// The latency of a copy, drawn from `channel`, its own stream, and rounded to the nearest nanosecond.
     #[inline]
     pub fn draw(&self, channel: &mut LatencyBits) -> Span {

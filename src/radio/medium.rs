@@ -59,6 +59,12 @@ impl Medium {
         prefetch(&self.sequences[sender.index()]);
     }
 
+    /// The shortest time from a transmission to an arrival: so long is what robots do without effect on others.
+    #[must_use]
+    pub fn lookahead(&self) -> Span {
+        self.latency.least()
+    }
+
     /// The number that the next frame of `sender` will have.
     ///
     /// # Panics

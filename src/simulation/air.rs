@@ -6,12 +6,12 @@ use tokio_util::codec::{Decoder, Encoder};
 use super::digest::Digest;
 use super::error::RunError;
 use super::inbox::Inbox;
-use crate::engine::{ActorId, SimTime, Span, prefetch};
+use crate::engine::{ActorId, SimTime, Span, outgrows_cache, prefetch};
 use crate::faults::Faults;
 use crate::metrics::Recorder;
 use crate::metrics::detection::CopyFate;
 use crate::motion::World;
-use crate::protocol::{Frame, MessageSize, Protocol, Reception};
+use crate::protocol::{Frame, MessageSize, Protocol, Reception, Topic};
 use crate::radio::{Fate, Listener, LossCause, Medium};
 
 /// From an instant to the next.
@@ -62,6 +62,8 @@ pub struct Air<P: Protocol> {
     /// Receivers whose next arrival may have come forward, for scenarios that wake robots on reception.
     reached: Vec<ActorId>,
     tell_reached: bool,
+    /// Whether memory is asked for before it is needed.
+    prefetches: bool,
 }
 
 impl<P: Protocol> Air<P> {
@@ -85,6 +87,7 @@ impl<P: Protocol> Air<P> {
             deaf: 0,
             reached: Vec::new(),
             tell_reached: wake_on_reception,
+            prefetches: outgrows_cache(robots),
         }
     }
 
@@ -101,6 +104,11 @@ impl<P: Protocol> Air<P> {
         world.prefetch_neighbours(robot, self.medium.range());
     }
 
+    /// So long what a robot sends reaches nobody.
+    pub fn lookahead(&self) -> Span {
+        self.medium.lookahead()
+    }
+
     /// Broadcasts `messages`, which `sender` sends at `now`.
     pub fn broadcast(
         &mut self,
@@ -114,8 +122,11 @@ impl<P: Protocol> Air<P> {
         let Surroundings { world, faults } = place;
         self.listeners.clear();
         let Self { listeners, inboxes, .. } = self;
+        let prefetches = self.prefetches;
         world.for_each_within(sender, now, self.medium.range(), |id, from_sender| {
-            prefetch(&inboxes[id.index()]);
+            if prefetches {
+                prefetch(&inboxes[id.index()]);
+            }
             listeners.push(Listener {
                 id,
                 sender: -from_sender,
@@ -214,12 +225,8 @@ impl<P: Protocol> Air<P> {
             }),
             Fate::Lost(cause) => losses.push((receiver, cause)),
         });
-        let topic = P::topic(&aboard[0].message);
-        for arrival in &self.arrivals {
-            self.inboxes[arrival.receiver.index()].prefetch_end();
-        }
-        for &(receiver, cause) in &self.losses {
-            recorder.prefetch_lost(receiver, topic, cause);
+        if self.prefetches {
+            self.prefetch_fates(P::topic(&aboard[0].message), recorder);
         }
         for (receiver, cause) in self.losses.drain(..) {
             for frame in aboard {
@@ -246,6 +253,16 @@ impl<P: Protocol> Air<P> {
                     displacement: arrival.displacement,
                 });
             }
+        }
+    }
+
+    /// Asks for where the fates of the present frame are written down.
+    fn prefetch_fates(&self, topic: Topic, recorder: &Recorder) {
+        for arrival in &self.arrivals {
+            self.inboxes[arrival.receiver.index()].prefetch_end();
+        }
+        for &(receiver, cause) in &self.losses {
+            recorder.prefetch_lost(receiver, topic, cause);
         }
     }
 

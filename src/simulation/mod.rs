@@ -14,6 +14,7 @@ mod inbox;
 mod run;
 mod setup;
 mod trial;
+mod wakes;
 
 pub use error::RunError;
 pub use setup::{DriverKind, Setup};
