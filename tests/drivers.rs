@@ -84,3 +84,60 @@ fn waking_robots_for_each_reception_changes_when_they_read_and_not_what_arrives(
     assert_eq!(waiting.latency, woken.latency);
     assert!(woken.events > 2 * waiting.events);
 }
+
+/// Latencies that are the same whatever their least value is declared to be, and robots that take their control steps in
+/// rounds if it is not zero.
+fn assert_same_with_and_without_rounds(file: &str, overrides: &[&str]) {
+    let [in_rounds, one_by_one] = ["0.01", "0.0"].map(|least| {
+        let latency = format!("radio.latency=Normal(mean: 0.03, std_dev: 0.002, min: {least})");
+        let overrides: Vec<&str> = overrides
+            .iter()
+            .copied()
+            .chain([latency.as_str(), "control.phase=Random"])
+            .collect();
+        run(&scenario(file, &overrides), 0, DriverKind::Inline)
+    });
+    assert!(in_rounds.ledger.iter().any(|topic| topic.delivered > 0));
+    assert_eq!(in_rounds, one_by_one);
+}
+
+#[test]
+fn control_steps_taken_in_rounds_are_the_same_run_as_one_by_one() {
+    assert_same_with_and_without_rounds("loss20.ron", &["time_limit=20.0"]);
+}
+
+#[test]
+fn rounds_make_no_difference_to_robots_that_fail_and_recover_as_they_take_a_role() {
+    // Robots that join fail within a few milliseconds, before the round is over in which they joined.
+    assert_same_with_and_without_rounds(
+        "loss20.ron",
+        &[
+            "time_limit=60.0",
+            "faults=[
+                Robots(when: Hazard(per_step: 0.001), effect: Crash, lasts: For(0.35)),
+                Robots(when: OnJoin(probability: 0.5, window: 0.005), roles: [\"networker\"], effect: Deaf, lasts: For(0.05)),
+            ]",
+        ],
+    );
+}
+
+#[test]
+fn rounds_make_no_difference_to_timers_between_control_steps_and_to_wakes_on_reception() {
+    let overrides = [
+        "time_limit=20.0",
+        "protocol=Heartbeat",
+        "radio.loss=Bernoulli(0.6)",
+        "detector=Timeout(0.25)",
+    ];
+    assert_same_with_and_without_rounds("loss20.ron", &overrides);
+    let woken = [&overrides[..], &["control.wake=OnReception"]].concat();
+    assert_same_with_and_without_rounds("loss20.ron", &woken);
+}
+
+#[test]
+fn a_swarm_that_outgrows_the_cache_is_the_same_run_under_both_drivers() {
+    assert_same_under_both_drivers(&scenario(
+        "heartbeat.ron",
+        &["swarm.robots=2100", "arena.size=(150.0, 150.0)", "time_limit=1.0"],
+    ));
+}

@@ -15,7 +15,12 @@ mod workload;
 
 use desim::simulation::DriverKind;
 use measure::Sample;
+use mimalloc::MiMalloc;
 use workload::{Counts, Workload};
+
+/// The allocator of the `desim` command, for every program here.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 const PROGRAMS: [&str; 3] = ["bare", "inline", "actors"];
 const TRIALS: [&str; 2] = ["trial, inline", "trial, actors"];

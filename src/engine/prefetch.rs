@@ -10,6 +10,8 @@ const CACHED: usize = 2_000;
 
 /// Bytes that travel together between memory and cache.
 const LINE: usize = 64;
+/// Bytes of an entry that is aligned to its size in any table.
+const SMALL: usize = 16;
 
 /// Whether a swarm of so many `robots` outgrows the cache, so that asking for memory is worth its time.
 #[must_use]
@@ -20,27 +22,30 @@ pub fn outgrows_cache(robots: usize) -> bool {
 /// Asks for `value`.
 #[inline]
 pub fn prefetch<T>(value: &T) {
-    lines(std::ptr::from_ref(value).cast(), size_of::<T>());
+    bytes(std::ptr::from_ref(value).cast(), size_of::<T>());
 }
 
 /// Asks for all of `values`.
 #[inline]
 pub fn prefetch_all<T>(values: &[T]) {
-    lines(values.as_ptr().cast(), size_of_val(values));
+    bytes(values.as_ptr().cast(), size_of_val(values));
 }
 
 /// Asks for the place where the next push to `values` goes.
 #[inline]
 pub fn prefetch_end<T>(values: &Vec<T>) {
-    lines(values.as_ptr().wrapping_add(values.len()).cast(), size_of::<T>());
+    bytes(values.as_ptr().wrapping_add(values.len()).cast(), size_of::<T>());
 }
 
-/// Asks for `bytes` bytes from `start` on.
+/// Asks for `count` bytes from `start` on.
 #[inline]
-fn lines(start: *const u8, bytes: usize) {
-    let before = start.addr() % LINE;
-    for line in 0..(before + bytes).div_ceil(LINE) {
-        line_at(start.wrapping_add(line * LINE));
+fn bytes(start: *const u8, count: usize) {
+    for offset in (0..count).step_by(LINE) {
+        line_at(start.wrapping_add(offset));
+    }
+    // They may end in one line more. What is as small as a table's entry nearly never does.
+    if count > SMALL {
+        line_at(start.wrapping_add(count - 1));
     }
 }
 

@@ -28,11 +28,9 @@ impl ControlSteps {
         self.ring.get(self.next).map_or(SimTime::NEVER, |step| step.0)
     }
 
-    /// The robot whose control step comes `steps` after the next, if the swarm has more than that.
-    pub fn ahead(&self, steps: usize) -> Option<ActorId> {
-        let place = self.next + steps;
-        let step = self.ring.get(place).or_else(|| self.ring.get(place - self.ring.len()))?;
-        Some(step.1)
+    /// The robot whose control step comes `steps` after the next one.
+    pub fn ahead(&self, steps: usize) -> ActorId {
+        self.ring[(self.next + steps) % self.ring.len()].1
     }
 
     /// Takes the next control step if it is due at `now`: the robot whose it is.
@@ -116,6 +114,8 @@ impl Alarms {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::VecDeque;
+
     use proptest::prelude::*;
 
     use super::*;
@@ -176,7 +176,9 @@ mod tests {
             let mut steps = ControlSteps::new(&first_steps, Span::from_nanos(PERIOD));
             let mut taken = Vec::new();
             for now in 0..rounds * PERIOD {
+                let mut coming: VecDeque<_> = (0..phases.len()).map(|n| steps.ahead(n)).collect();
                 while let Some(robot) = steps.take_due(at(now)) {
+                    prop_assert_eq!(coming.pop_front(), Some(robot));
                     taken.push((now, robot.0));
                 }
                 prop_assert!(steps.upcoming() > at(now));

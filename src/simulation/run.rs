@@ -153,29 +153,25 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             if now > self.rhythm.time_limit {
                 break;
             }
+            // Robots are counted where they wake, one by one.
+            self.events += u64::from(!matches!(event, Event::ControlSteps | Event::Alarm(_)));
             match event {
                 Event::ControlSteps => self.take_control_steps(now).await?,
                 Event::Alarm(_) => self.ring_alarms(now).await?,
                 Event::MotionTick => {
-                    self.events += 1;
                     if stop.is_cancelled() {
                         return Err(RunError::Interrupted);
                     }
                     self.world.advance();
                     self.queue.schedule(event, now + self.world.tick());
                 }
-                Event::Fault => {
-                    self.events += 1;
-                    self.suffer(now);
-                }
+                Event::Fault => self.suffer(now),
                 Event::Sample => {
-                    self.events += 1;
                     self.locate(now);
                     self.recorder.sample(now, &self.positions);
                     self.queue.schedule(event, now + self.rhythm.sample_interval);
                 }
                 Event::Observe => {
-                    self.events += 1;
                     self.locate(now);
                     let progress = self.recorder.observe(self.steps, &self.positions);
                     if matches!(progress, Progress::Complete { .. }) {
@@ -194,7 +190,10 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     fn next_event(&self) -> (Event, SimTime) {
         let step = self.upcoming_step();
         let comes_first = |&(event, at): &(Event, SimTime)| (at, event.class()) < (step, Event::ControlSteps.class());
-        self.queue.peek().filter(comes_first).unwrap_or((Event::ControlSteps, step))
+        self.queue
+            .peek()
+            .filter(comes_first)
+            .unwrap_or((Event::ControlSteps, step))
     }
 
     /// Lets robots and links fail and recover.

@@ -100,18 +100,17 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         if !self.prefetches {
             return;
         }
-        if let Some(robot) = self.control_steps.ahead(ROWS_AHEAD) {
-            prefetch(&self.wakes[robot.index()]);
-            self.world.prefetch_row(robot);
-            self.air.prefetch_row(robot);
-            self.recorder.prefetch_row(robot);
-            self.driver.prefetch_row(robot);
-        }
-        if let Some(robot) = self.control_steps.ahead(CONTENTS_AHEAD) {
-            self.air.prefetch_contents(robot, &self.world);
-            self.recorder.prefetch_contents(robot);
-            self.driver.prefetch_contents(robot);
-        }
+        let robot = self.control_steps.ahead(ROWS_AHEAD);
+        prefetch(&self.wakes[robot.index()]);
+        self.world.prefetch_row(robot);
+        self.air.prefetch_row(robot);
+        self.recorder.prefetch_row(robot);
+        self.driver.prefetch_row(robot);
+
+        let robot = self.control_steps.ahead(CONTENTS_AHEAD);
+        self.air.prefetch_contents(robot, &self.world);
+        self.recorder.prefetch_contents(robot);
+        self.driver.prefetch_contents(robot);
     }
 
     /// Lets the answer of `job` take effect, and keeps its buffers.

@@ -9,7 +9,7 @@ use statrs::distribution::{Continuous, ContinuousCDF, Exp, Gamma, LogNormal, Nor
 use statrs::statistics::Distribution;
 
 use super::statistics::{assert_near, correlation, kolmogorov_limit, kolmogorov_smirnov, mean};
-use super::{fates, losing, non_negative, positive, sent};
+use super::{fates, losing, medium, non_negative, positive, sent};
 
 const RECEIVERS: u32 = 10;
 const FRAMES: u32 = 2000;
@@ -123,6 +123,28 @@ fn a_distribution_without_spread_is_a_constant() {
                 .iter()
                 .all(|latency| latency.to_bits() == 0.02_f64.to_bits())
         );
+    }
+}
+
+#[test]
+fn no_latency_falls_short_of_the_lookahead_which_is_the_least_that_the_model_allows() {
+    let uniform = LatencyConfig::Uniform {
+        min: non_negative(0.01),
+        max: non_negative(0.05),
+    };
+    let exponential = LatencyConfig::Exponential { mean: positive(0.03) };
+    for (config, least) in [
+        (LatencyConfig::Constant(non_negative(0.02)), 0.02),
+        (uniform, 0.01),
+        (normal(0.01, 0.02, 0.005), 0.005),
+        (normal(0.02, 0.0, 0.01), 0.02),
+        (exponential, 0.0),
+    ] {
+        let mut radio = losing(LossConfig::None);
+        radio.latency = config.clone();
+        let lookahead = medium(&radio, 1).lookahead().as_secs();
+        assert!((lookahead - least).abs() < 1e-12, "{config:?}: {lookahead}");
+        assert!(latencies(&config).concat().iter().all(|&latency| latency >= lookahead));
     }
 }
 
