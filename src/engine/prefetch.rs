@@ -33,7 +33,7 @@ pub fn prefetch_all<T>(values: &[T]) {
 
 /// Asks for the place where the next push to `values` goes.
 #[inline]
-pub fn prefetch_end<T>(values: &Vec<T>) {
+pub fn prefetch_end<T>(values: &[T]) {
     bytes(values.as_ptr().wrapping_add(values.len()).cast(), size_of::<T>());
 }
 
@@ -72,7 +72,7 @@ mod tests {
         prefetch(&[0_u8; 1000]);
         prefetch_all::<u64>(&[]);
         prefetch_all(&vec![0_u64; 1000]);
-        prefetch_end::<u64>(&Vec::new());
+        prefetch_end::<u64>(&[]);
         prefetch_end(&vec![0_u64; 8]);
     }
 }
