@@ -13,10 +13,10 @@ struct Gossiper(bool);
 
 impl Protocol for Gossiper {
     type Message = (); // there is but one rumour
+    type Heard = ();
     type Codec = RumourCodec;
     const TOPICS: &'static [&'static str] = &["rumour"];
     const ROLES: &'static [&'static str] = &["ignorant", "knowing"];
-
     fn step(&mut self, _now: SimTime, input: &mut Input<()>, output: &mut Output<()>) {
         self.0 |= !input.inbox.is_empty();
         if self.0 && input.wake == Wake::ControlStep {

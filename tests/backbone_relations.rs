@@ -57,6 +57,7 @@ struct Watched {
 
 impl Protocol for Watched {
     type Message = Message;
+    type Heard = Rc<Message>;
     type Codec = BackboneCodec;
     const TOPICS: &'static [&'static str] = Backbone::TOPICS;
     const ROLES: &'static [&'static str] = Backbone::ROLES;
@@ -66,7 +67,7 @@ impl Protocol for Watched {
         Backbone::topic(message)
     }
 
-    fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
+    fn step(&mut self, now: SimTime, input: &mut Input<Rc<Message>>, output: &mut Output<Message>) {
         self.robot.step(now, input, output);
         for note in &output.notes {
             match note {

@@ -71,8 +71,8 @@ mod tests {
         prefetch(&());
         prefetch(&[0_u8; 1000]);
         prefetch_all::<u64>(&[]);
-        prefetch_all(&vec![0_u64; 1000]);
+        prefetch_all(&[0_u64; 1000]);
         prefetch_end::<u64>(&[]);
-        prefetch_end(&vec![0_u64; 8]);
+        prefetch_end(&[0_u64; 8]);
     }
 }

@@ -114,6 +114,7 @@ impl<P> Heartbeat<P> {
 
 impl<P: Carried> Protocol for Heartbeat<P> {
     type Message = Message<P>;
+    type Heard = Message<P>;
     type Codec = MessageCodec<P>;
     const TOPICS: &'static [&'static str] = &["status", "probe"];
     const ROLES: &'static [&'static str] = &["robot"];

@@ -4,6 +4,9 @@
 //! is near; it answers with messages, a velocity, timers, and notes for the metrics. It never sees the radio, the
 //! queue or another robot.
 
+use std::borrow::Borrow;
+use std::fmt::Debug;
+
 use rand_philox::Philox;
 use tokio_util::codec::{Decoder, Encoder};
 
@@ -34,8 +37,10 @@ pub struct TimerId(pub u8);
 
 /// A protocol as one robot runs it.
 pub trait Protocol: Sized + 'static {
-    /// What robots say to each other, decoded. Each receiver gets a clone: keep what is large behind an `Rc`.
-    type Message: Clone + std::fmt::Debug + 'static;
+    /// What robots say to each other.
+    type Message: Debug + 'static;
+    /// A message as its receivers get it, a clone each: the message itself if it is a word or two, else an `Rc` of it.
+    type Heard: From<Self::Message> + Borrow<Self::Message> + Clone + Debug + 'static;
     /// Makes payload bytes of messages and messages of payload bytes.
     type Codec: Encoder<Self::Message, Error = CodecError> + Decoder<Item = Self::Message, Error = CodecError> + Default;
     /// Names of the topics, by which traffic is accounted; [`topics`](Self::topics) are those in use.
@@ -70,7 +75,7 @@ pub trait Protocol: Sized + 'static {
     fn prefetch(&self) {}
 
     /// Takes one step: reads `input`, fills `output`.
-    fn step(&mut self, now: SimTime, input: &mut Input<Self::Message>, output: &mut Output<Self::Message>);
+    fn step(&mut self, now: SimTime, input: &mut Input<Self::Heard>, output: &mut Output<Self::Message>);
 }
 
 /// Why a robot is awake.
@@ -273,7 +278,7 @@ pub enum CodecError {
 pub struct Robot<P>(pub P);
 
 impl<P: Protocol> Process for Robot<P> {
-    type Input = Input<P::Message>;
+    type Input = Input<P::Heard>;
     type Output = Output<P::Message>;
 
     fn prefetch(&self) {

@@ -1,5 +1,7 @@
 //! Between a robot that sends and the robots that hear: encode, offer to the medium, put arrivals into inboxes.
 
+use std::borrow::Borrow as _;
+
 use bytes::BytesMut;
 use tokio_util::codec::{Decoder, Encoder};
 
@@ -37,12 +39,12 @@ pub struct Surroundings<'a> {
 pub struct Air<P: Protocol> {
     medium: Medium,
     codec: P::Codec,
-    inboxes: Vec<Inbox<P::Message>>,
+    inboxes: Vec<Inbox<P::Heard>>,
     /// The payload under way, and who hears the present sender: buffers, kept to be used again.
     payload: BytesMut,
     listeners: Vec<Listener>,
     /// The messages of the present frame: one, or all of a wake where they share one.
-    aboard: Vec<Frame<P::Message>>,
+    aboard: Vec<Frame<P::Heard>>,
     piggyback: bool,
     /// For each robot the number of its next message.
     sequences: Vec<u32>,
@@ -167,7 +169,7 @@ impl<P: Protocol> Air<P> {
         message: P::Message,
         recorder: &mut Recorder,
         digest: &mut Digest,
-    ) -> Result<Frame<P::Message>, RunError> {
+    ) -> Result<Frame<P::Heard>, RunError> {
         let topic = P::topic(&message);
         self.payload.clear();
         self.codec.encode(message, &mut self.payload)?;
@@ -194,7 +196,7 @@ impl<P: Protocol> Air<P> {
             sequence,
             sent_at: now,
             size,
-            message,
+            message: message.into(),
         })
     }
 
@@ -202,7 +204,7 @@ impl<P: Protocol> Air<P> {
     // Inlined where a frame has one message, nearly always, the loops over what is aboard are gone.
     #[allow(clippy::inline_always)]
     #[inline(always)]
-    fn transmit(&mut self, now: SimTime, aboard: &[Frame<P::Message>], faults: &Faults, recorder: &mut Recorder) {
+    fn transmit(&mut self, now: SimTime, aboard: &[Frame<P::Heard>], faults: &Faults, recorder: &mut Recorder) {
         let sender = aboard[0].sender;
         if !self.hindrances.is_empty() {
             self.hinder(sender, faults);
@@ -226,7 +228,7 @@ impl<P: Protocol> Air<P> {
             Fate::Lost(cause) => losses.push((receiver, cause)),
         });
         if self.prefetches {
-            self.prefetch_fates(P::topic(&aboard[0].message), recorder);
+            self.prefetch_fates(P::topic(aboard[0].message.borrow()), recorder);
         }
         for (receiver, cause) in self.losses.drain(..) {
             for frame in aboard {
@@ -234,7 +236,7 @@ impl<P: Protocol> Air<P> {
             }
         }
         if let Some(trace) = recorder.trace_of(sender) {
-            let is_status = |frame: &&Frame<P::Message>| P::STATUS == Some(P::topic(&frame.message));
+            let is_status = |frame: &&Frame<P::Heard>| P::STATUS == Some(P::topic(frame.message.borrow()));
             for frame in aboard.iter().filter(is_status) {
                 for arrival in &self.arrivals {
                     trace.fate(frame.sequence, arrival.receiver, CopyFate::Arrives(arrival.at));
@@ -317,7 +319,7 @@ impl<P: Protocol> Air<P> {
         &mut self,
         now: SimTime,
         receiver: ActorId,
-        arrived: &mut Vec<Reception<P::Message>>,
+        arrived: &mut Vec<Reception<P::Heard>>,
         recorder: &mut Recorder,
     ) {
         self.lose_unheard(now + INSTANT, receiver, recorder);
@@ -335,7 +337,7 @@ impl<P: Protocol> Air<P> {
     }
 
     /// What is on its way to `receiver`.
-    pub fn waiting(&self, receiver: ActorId) -> &[Reception<P::Message>] {
+    pub fn waiting(&self, receiver: ActorId) -> &[Reception<P::Heard>] {
         self.inboxes[receiver.index()].waiting()
     }
 
@@ -360,26 +362,26 @@ impl<P: Protocol> Air<P> {
                 if reception.at <= end {
                     record_delivery::<P>(ActorId(receiver as u32), reception, recorder);
                 } else {
-                    recorder.in_flight(P::topic(&reception.frame.message));
+                    recorder.in_flight(P::topic(reception.frame.message.borrow()));
                 }
             }
         }
     }
 }
 
-fn record_loss<P: Protocol>(receiver: ActorId, frame: &Frame<P::Message>, cause: LossCause, recorder: &mut Recorder) {
-    let topic = P::topic(&frame.message);
+fn record_loss<P: Protocol>(receiver: ActorId, frame: &Frame<P::Heard>, cause: LossCause, recorder: &mut Recorder) {
+    let topic = P::topic(frame.message.borrow());
     recorder.lost(receiver, topic, cause, frame.size);
     if P::STATUS == Some(topic) {
         recorder.status_lost(receiver, frame.sender, frame.sequence, cause);
     }
 }
 
-fn record_delivery<P: Protocol>(receiver: ActorId, reception: &Reception<P::Message>, recorder: &mut Recorder) {
+fn record_delivery<P: Protocol>(receiver: ActorId, reception: &Reception<P::Heard>, recorder: &mut Recorder) {
     let frame = &reception.frame;
     recorder.delivered(
         receiver,
-        P::topic(&frame.message),
+        P::topic(frame.message.borrow()),
         frame.size,
         reception.at.since(frame.sent_at),
     );

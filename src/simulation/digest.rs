@@ -17,7 +17,7 @@ impl Digest {
     }
 
     /// A robot woke and answered.
-    pub fn wake<M>(&mut self, now: SimTime, robot: ActorId, input: &Input<M>, output: &Output<M>) {
+    pub fn wake<H, M>(&mut self, now: SimTime, robot: ActorId, input: &Input<H>, output: &Output<M>) {
         let cause = match input.wake {
             Wake::ControlStep => 0,
             Wake::Timer(id) => 1 + u64::from(id.0),

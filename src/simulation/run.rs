@@ -46,7 +46,7 @@ impl EventKey for Event {
 }
 
 /// A wake of a robot that runs `P`.
-pub(super) type JobFor<P> = Job<Input<<P as Protocol>::Message>, Output<<P as Protocol>::Message>>;
+pub(super) type JobFor<P> = Job<Input<<P as Protocol>::Heard>, Output<<P as Protocol>::Message>>;
 
 /// Jobs, each in a box of its own: they travel through mailboxes, and the box is what moves.
 #[allow(clippy::vec_box)]

@@ -20,6 +20,7 @@ struct Chatter {
 
 impl Protocol for Chatter {
     type Message = u8;
+    type Heard = u8;
     type Codec = Numbers;
     const TOPICS: &'static [&'static str] = &["first", "second", "third"];
     const ROLES: &'static [&'static str] = &["together", "apart"];

@@ -58,7 +58,7 @@ pub struct Backbone {
     recruiter: Recruiter,
     sidestep: Sidestep,
     /// What arrived since the last control step and was read when the detector's timer woke the robot.
-    unread: Vec<Reception<Message>>,
+    unread: Vec<Reception<Rc<Message>>>,
     said: Said,
     told: Told,
 }
@@ -151,9 +151,9 @@ impl Backbone {
         self.known.mission.root
     }
 
-    fn hear(&mut self, reception: &Reception<Message>, out: &mut Vec<Message>) {
+    fn hear(&mut self, reception: &Reception<Rc<Message>>, out: &mut Vec<Message>) {
         let frame = &reception.frame;
-        match &frame.message {
+        match &*frame.message {
             Message::Status(status) => {
                 let position = self.known.position + reception.displacement();
                 self.known
@@ -211,7 +211,7 @@ impl Backbone {
         }
     }
 
-    fn control(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
+    fn control(&mut self, now: SimTime, input: &mut Input<Rc<Message>>, output: &mut Output<Message>) {
         let Knowledge {
             neighbours, detector, ..
         } = &mut self.known;
@@ -339,6 +339,7 @@ impl Backbone {
 
 impl Protocol for Backbone {
     type Message = Message;
+    type Heard = Rc<Message>;
     type Codec = BackboneCodec;
     const TOPICS: &'static [&'static str] = &["status", "request", "parent strand", "child strand", "probe"];
     const ROLES: &'static [&'static str] = &["free", "root", "networker", "worker"];
@@ -355,7 +356,7 @@ impl Protocol for Backbone {
         })
     }
 
-    fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
+    fn step(&mut self, now: SimTime, input: &mut Input<Rc<Message>>, output: &mut Output<Message>) {
         self.known.detector.read(now, &input.inbox, output);
         if input.wake == Wake::Timer(detector::TIMER) {
             // Believing, and asking for news of others, is all that it does between control steps: what it read, and what

@@ -18,6 +18,7 @@ pub use nfd_s::NfdSConfig;
 pub use phi::{DialectConfig, DialectSetting, PhiAccrualConfig};
 pub use swim::{Call, Claim, News, Probe, SwimConfig};
 
+use std::borrow::Borrow;
 use std::convert::Infallible;
 use std::rc::Rc;
 
@@ -123,7 +124,11 @@ impl Detector {
 
     /// Takes in what has arrived by `now`, in order of arrival, and answers what asks for an answer.
     #[inline]
-    pub fn read<M: Monitored>(&mut self, now: SimTime, inbox: &[Reception<M>], output: &mut Output<M>) {
+    pub fn read<H, M>(&mut self, now: SimTime, inbox: &[Reception<H>], output: &mut Output<M>)
+    where
+        H: Borrow<M>,
+        M: Monitored,
+    {
         match self {
             Self::Timeout(watch) => watch.read(inbox, output),
             Self::NfdS(watch) => watch.read(inbox, output),

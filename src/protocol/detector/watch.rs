@@ -1,5 +1,7 @@
 //! Detectors that listen: each status puts off the instant at which its sender is suspected, and a rule says to when.
 
+use std::borrow::Borrow;
+
 use super::{Monitored, Sign, TIMER};
 use crate::engine::{ActorId, SimTime};
 use crate::protocol::robot_table::{RobotRow, RobotTable};
@@ -107,16 +109,16 @@ impl<R: Rule> Watch<R> {
 
     /// Takes in the statuses in `inbox`, which are in order of arrival.
     #[inline]
-    pub fn read<M: Monitored>(&mut self, inbox: &[Reception<M>], output: &mut Output<M>) {
+    pub fn read<H: Borrow<M>, M: Monitored>(&mut self, inbox: &[Reception<H>], output: &mut Output<M>) {
         for reception in inbox {
-            if matches!(reception.frame.message.sign(), Sign::Status) {
+            if matches!(reception.frame.message.borrow().sign(), Sign::Status) {
                 self.hear(reception, output);
             }
         }
     }
 
     #[inline]
-    fn hear<M>(&mut self, status: &Reception<M>, output: &mut Output<M>) {
+    fn hear<H, M>(&mut self, status: &Reception<H>, output: &mut Output<M>) {
         let Some(row) = self.rows.get_mut(status.frame.sender) else {
             self.watch(status, output);
             return;
@@ -142,7 +144,7 @@ impl<R: Rule> Watch<R> {
     }
 
     /// Takes in the first status of a robot.
-    fn watch<M>(&mut self, status: &Reception<M>, output: &mut Output<M>) {
+    fn watch<H, M>(&mut self, status: &Reception<H>, output: &mut Output<M>) {
         let id = status.frame.sender;
         let row = Row {
             id,

@@ -241,6 +241,7 @@ impl Settings {
 
 impl Protocol for Rumor {
     type Message = Message;
+    type Heard = Message;
     type Codec = RumorCodec;
     const TOPICS: &'static [&'static str] = &["rumor", "request"];
     const ROLES: &'static [&'static str] = &["ignorant", "informed"];

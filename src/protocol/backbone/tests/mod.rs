@@ -68,7 +68,7 @@ impl Bench {
                 sequence: self.sequence,
                 sent_at: now,
                 size: MessageSize::alone(4),
-                message: message.clone(),
+                message: Rc::new(message.clone()),
             },
             displacement: [(x - self.x) as f32, -self.y as f32],
         });

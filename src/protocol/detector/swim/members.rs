@@ -81,7 +81,7 @@ pub struct Members {
 
 impl Members {
     /// A frame of a robot arrived: it is known from now on, and not down. Whether that is new.
-    pub fn hear<M>(&mut self, frame: &Reception<M>, output: &mut Output<M>) -> bool {
+    pub fn hear<H, M>(&mut self, frame: &Reception<H>, output: &mut Output<M>) -> bool {
         let id = frame.frame.sender;
         let sequence = frame.frame.sequence;
         let Some(member) = self.rows.get_mut(id) else {

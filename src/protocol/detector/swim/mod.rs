@@ -26,6 +26,8 @@ mod tests;
 pub use config::SwimConfig;
 pub use message::{Call, Claim, News, Probe};
 
+use std::borrow::Borrow;
+
 use rand_philox::Philox;
 
 use super::{Circumstances, Monitored, Sign, TIMER};
@@ -122,9 +124,13 @@ impl Swim {
     }
 
     /// Takes in what has arrived by `now`, and answers.
-    pub fn read<M: Monitored>(&mut self, now: SimTime, inbox: &[Reception<M>], output: &mut Output<M>) {
+    pub fn read<H, M>(&mut self, now: SimTime, inbox: &[Reception<H>], output: &mut Output<M>)
+    where
+        H: Borrow<M>,
+        M: Monitored,
+    {
         for reception in inbox {
-            let sign = reception.frame.message.sign();
+            let sign = reception.frame.message.borrow().sign();
             if matches!(sign, Sign::Other) {
                 continue;
             }
