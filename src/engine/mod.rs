@@ -2,6 +2,7 @@
 
 mod actors;
 mod inline;
+mod mailbox;
 mod prefetch;
 mod process;
 mod queue;
