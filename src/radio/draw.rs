@@ -29,17 +29,10 @@ impl FrameCopy {
         streams.at(self.sender.0, self.receiver.0, self.sequence)
     }
 
-    /// What this copy meets in its channel: the 64 bits that decide its loss, and what its latency is drawn from.
+    /// What this copy meets in its channel: 64 bits that decide its loss, and the first 64 of its latency.
     #[inline]
-    pub fn channel(self, streams: KeyedStreams) -> (u64, LatencyBits) {
-        let [loss, next] = streams.first_two(self.sender.0, self.receiver.0, self.sequence);
-        let bits = LatencyBits {
-            next: Some(next),
-            later: None,
-            copy: self,
-            streams,
-        };
-        (loss, bits)
+    pub fn channel(self, streams: KeyedStreams) -> [u64; 2] {
+        streams.first_two(self.sender.0, self.receiver.0, self.sequence)
     }
 
     /// Whether something of this `probability` happens to this copy.
@@ -66,6 +59,17 @@ pub(super) struct LatencyBits {
 }
 
 impl LatencyBits {
+    /// Those of `copy`, of which `first` are the first, from its stream among `streams`.
+    #[inline]
+    pub fn new(first: u64, copy: FrameCopy, streams: KeyedStreams) -> Self {
+        Self {
+            next: Some(first),
+            later: None,
+            copy,
+            streams,
+        }
+    }
+
     #[inline]
     fn bits(&mut self) -> u64 {
         match self.next.take() {

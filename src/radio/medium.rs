@@ -1,7 +1,7 @@
 //! The shared medium.
 
 use super::config::RadioConfig;
-use super::draw::{CHANNEL, FrameCopy};
+use super::draw::{CHANNEL, FrameCopy, LatencyBits};
 use super::latency::Latency;
 use super::loss::Loss;
 use super::sensing::Sensing;
@@ -20,6 +20,8 @@ pub struct Medium {
     /// The latency of every copy, if none is ever lost or late: no fate needs its channel's stream then.
     certain: Option<Span>,
     sensing: Sensing,
+    /// What the copies of the present frame meet in their channels: a buffer.
+    met: Vec<[u64; 2]>,
 }
 
 impl Medium {
@@ -45,6 +47,7 @@ impl Medium {
             loss,
             latency,
             sensing: Sensing::new(&config.sensing, *streams),
+            met: Vec::new(),
         }
     }
 
@@ -86,18 +89,33 @@ impl Medium {
         &mut self,
         now: SimTime,
         sender: ActorId,
-        listeners: impl IntoIterator<Item = Listener>,
+        listeners: impl IntoIterator<Item = Listener, IntoIter: Clone>,
         mut receive: impl FnMut(ActorId, Fate),
     ) -> u32 {
         let sequence = self.next_sequence(sender);
-        for listener in listeners {
+        let copies = listeners.into_iter().map(|listener| {
             let copy = FrameCopy {
                 sender,
                 receiver: listener.id,
                 sequence,
             };
-            receive(listener.id, self.fate(now, copy, listener));
+            (listener, copy)
+        });
+        if let Some(latency) = self.certain {
+            for (listener, copy) in copies {
+                receive(listener.id, self.arrival(now + latency, copy, listener));
+            }
+            return sequence;
         }
+        // First what all copies meet, which the processor does for several at a time, and then what that leads to, which it
+        // has to guess at.
+        let mut met = std::mem::take(&mut self.met);
+        met.clear();
+        met.extend(copies.clone().map(|(_, copy)| copy.channel(self.channel)));
+        for ((listener, copy), &bits) in copies.zip(&met) {
+            receive(listener.id, self.fate(now, copy, listener, bits));
+        }
+        self.met = met;
         sequence
     }
 
@@ -111,19 +129,19 @@ impl Medium {
     // Not inlined, the fate goes through memory and back: a fifth more time a reception.
     #[allow(clippy::inline_always)]
     #[inline(always)]
-    fn fate(&mut self, now: SimTime, copy: FrameCopy, listener: Listener) -> Fate {
-        let latency = if let Some(latency) = self.certain {
-            latency
-        } else {
-            let probability = self.loss.probability(copy, listener.sender.norm_squared());
-            let (bits, mut channel) = copy.channel(self.channel);
-            if unit_interval(bits) < probability {
-                return Fate::Lost(LossCause::Channel);
-            }
-            self.latency.draw(&mut channel)
-        };
+    fn fate(&mut self, now: SimTime, copy: FrameCopy, listener: Listener, [loss, latency]: [u64; 2]) -> Fate {
+        let probability = self.loss.probability(copy, listener.sender.norm_squared());
+        if unit_interval(loss) < probability {
+            return Fate::Lost(LossCause::Channel);
+        }
+        let mut bits = LatencyBits::new(latency, copy, self.channel);
+        self.arrival(now + self.latency.draw(&mut bits), copy, listener)
+    }
+
+    #[inline]
+    fn arrival(&self, at: SimTime, copy: FrameCopy, listener: Listener) -> Fate {
         Fate::Arrives {
-            at: now + latency,
+            at,
             displacement: self.sensing.displacement(copy, listener.sender),
         }
     }

@@ -60,7 +60,7 @@ fn medium(config: &RadioConfig, robots: u32) -> Medium {
 }
 
 /// Robots `ids`, each with the sender at `distance` metres.
-fn listeners(ids: std::ops::Range<u32>, distance: f64) -> impl Iterator<Item = Listener> {
+fn listeners(ids: std::ops::Range<u32>, distance: f64) -> impl Iterator<Item = Listener> + Clone {
     ids.map(move |id| Listener {
         id: ActorId(id),
         sender: Vec2::new(distance, 0.0),
