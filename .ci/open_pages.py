@@ -51,16 +51,18 @@ def faults(page: Page) -> list[str]:
 
 
 def hover(page: Page) -> list[str]:
-    """A chart must answer to the pointer."""
-    chart = page.locator("#headers-0 .nsewdrag").first
-    chart.scroll_into_view_if_needed()
-    box = chart.bounding_box()
-    rows = page.evaluate("document.getElementById('headers-0').data[0].y.length")
-    # The middle of the first bar, from left to right.
-    for step in range(1, 20):
-        page.mouse.move(box["x"] + box["width"] * step / 20, box["y"] + box["height"] / rows / 2)
-        page.wait_for_timeout(60)
-        if page.locator("#headers-0 .hoverlayer .hovertext").count() > 0:
+    """A chart of rows must answer to the pointer: the headers of a scenario's page, a figure by setting of a study's."""
+    chart = page.locator("#headers-0, [id^=by-setting].plotly-graph-div").first
+    area = chart.locator(".nsewdrag").first
+    area.scroll_into_view_if_needed()
+    box = area.bounding_box()
+    rows = chart.evaluate("chart => chart.data[0].y.length")
+    # The middle of the first row, from left to right.
+    steps = 60
+    for step in range(1, steps):
+        page.mouse.move(box["x"] + box["width"] * step / steps, box["y"] + box["height"] / rows / 2)
+        page.wait_for_timeout(40)
+        if chart.locator(".hoverlayer .hovertext").count() > 0:
             return []
     return ["a chart did not answer to the pointer"]
 

@@ -1,6 +1,5 @@
 //! `desim compare`: runs the settings of a study, or several scenarios, and says how they differ.
 
-use std::io::{self, IsTerminal, Write};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -10,10 +9,9 @@ use serde_json::json;
 
 use super::failure::Failure;
 use super::settings::Settings;
-use super::shown::Format;
-use crate::export::{self, StudyFolder, StudyManifest};
+use super::shown::{Format, print_comparison};
+use crate::export::{StudyFolder, StudyManifest};
 use crate::metrics::comparison::Comparison;
-use crate::report;
 use crate::scenario::{Plan, contents, is_study, load_study, plan_of_files};
 
 /// What `desim compare --help` says.
@@ -86,7 +84,10 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
         Some(comparison) => comparison,
         None => Settings::open(&folder, &plan, arguments)?.compare(manifest)?,
     };
-    print(&comparison, &folder, arguments)
+    if arguments.quiet && arguments.format == Format::Text {
+        return Ok(());
+    }
+    print_comparison(&comparison, &folder, arguments.format)
 }
 
 /// What is to be compared.
@@ -179,22 +180,4 @@ impl CompareArguments {
             eprintln!("{words}");
         }
     }
-}
-
-fn print(comparison: &Comparison, folder: &StudyFolder, arguments: &CompareArguments) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
-    match arguments.format {
-        Format::Json => out.write_all(&export::json(comparison))?,
-        Format::Text if arguments.quiet => {}
-        Format::Text => {
-            let text = report::comparison(&report::ComparisonInput {
-                comparison,
-                folder: folder.path(),
-                files: &folder.files(),
-                colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
-            });
-            out.write_all(text.as_bytes())?;
-        }
-    }
-    Ok(out.flush()?)
 }

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::Failure;
-use super::shown::{Finished, Format};
+use super::shown::{Finished, Format, print_comparison};
 use crate::experiment::Parts;
-use crate::export::{Folder, PAGE, Results, keep_page};
-use crate::report::{PAGE_MARK, PageInput, page};
+use crate::export::{Folder, PAGE, Results, StudyFolder, keep_page};
+use crate::report::{PAGE_MARK, PageInput, page, study_page};
 
 /// What `desim report --help` says.
 pub const LONG_ABOUT: &str = "\
@@ -19,7 +19,10 @@ report.html in the folder, one page that needs no network, with charts that answ
 and as CSV, fit for a phone and for paper.
 
 Every file is first held against the manifest. Several folders give one report of all their trials together; they must be of \
-one scenario and one version and may differ in seed and number of trials alone.";
+one scenario and one version and may differ in seed and number of trials alone.
+
+The folder of a study, as `desim compare` leaves it, gives the report of the comparison, and a page with every figure by setting, \
+the differences with their intervals, and the Pareto front. Its settings can be reported by their own folders.";
 
 /// Arguments of `desim report`.
 #[derive(Debug, Args)]
@@ -40,6 +43,9 @@ pub struct ReportArguments {
 /// # Errors
 /// If the folders do not hold results that can be reported together, or the page cannot be written.
 pub fn run(arguments: &ReportArguments) -> Result<(), Failure> {
+    if let Some(study) = study(&arguments.dirs)? {
+        return report_study(&study, arguments);
+    }
     let results = Results::pooled(&arguments.dirs)?;
     let files = write_page(&results, arguments)?;
     let manifests = || results.sources.iter().map(|(_, manifest)| manifest);
@@ -58,6 +64,43 @@ pub fn run(arguments: &ReportArguments) -> Result<(), Failure> {
         files: files.iter().map(String::as_str).collect(),
     };
     finished.print(arguments.format)
+}
+
+/// The folder of a study, if one is asked about.
+fn study(dirs: &[PathBuf]) -> Result<Option<StudyFolder>, Failure> {
+    let Some(dir) = dirs.iter().find(|dir| StudyFolder::is_at(dir)) else {
+        return Ok(None);
+    };
+    if dirs.len() > 1 {
+        return Err(Failure::Input(format!(
+            "error: {} holds a study, which is reported alone: give its folder only, or the folders of settings",
+            dir.display()
+        )));
+    }
+    Ok(Some(StudyFolder::new(dir.clone())))
+}
+
+fn report_study(folder: &StudyFolder, arguments: &ReportArguments) -> Result<(), Failure> {
+    let unfinished = || {
+        Failure::Input(format!(
+            "error: the study in {} is not finished: go on with it by `desim compare`",
+            folder.path().display()
+        ))
+    };
+    let manifest = folder
+        .contents()?
+        .filter(|manifest| manifest.finished)
+        .ok_or_else(unfinished)?;
+    let comparison = folder.comparison()?.ok_or_else(unfinished)?;
+    let html = study_page(&comparison, &manifest.made_by());
+    match &arguments.out {
+        Some(file) => write(file, &html)?,
+        None => {
+            folder.keep_page(&html)?;
+            eprintln!("{} has the charts", folder.path().join(PAGE).display());
+        }
+    }
+    print_comparison(&comparison, folder, arguments.format)
 }
 
 fn question(results: &Results) -> Option<String> {

@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 use super::failure::Failure;
-use crate::export::{self, TrialEntry};
+use crate::export::{self, StudyFolder, TrialEntry};
 use crate::metrics::Summary;
+use crate::metrics::comparison::Comparison;
 use crate::predict;
 use crate::report::{self, Speed};
 use crate::scenario::Scenario;
@@ -70,4 +71,25 @@ impl Finished<'_> {
             colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
         })
     }
+}
+
+/// Prints what compares the settings of a study in `folder`.
+///
+/// # Errors
+/// If standard output cannot be written to.
+pub fn print_comparison(comparison: &Comparison, folder: &StudyFolder, format: Format) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match format {
+        Format::Json => out.write_all(&export::json(comparison))?,
+        Format::Text => {
+            let text = report::comparison(&report::ComparisonInput {
+                comparison,
+                folder: folder.path(),
+                files: &folder.files(),
+                colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+            });
+            out.write_all(text.as_bytes())?;
+        }
+    }
+    Ok(out.flush()?)
 }

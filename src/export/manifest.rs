@@ -97,9 +97,14 @@ impl Manifest {
     /// The version of desim and the commit that it was built from, where that is known.
     #[must_use]
     pub fn made_by(&self) -> String {
-        let commit = self.commit.as_ref().map(|commit| format!(" ({commit})"));
-        format!("desim {}{}", self.version, commit.unwrap_or_default())
+        made_by(&self.version, self.commit.as_deref())
     }
+}
+
+/// What a version of desim is called, with its commit where that is known.
+pub(super) fn made_by(version: &str, commit: Option<&str>) -> String {
+    let commit = commit.map(|commit| format!(" ({commit})"));
+    format!("desim {version}{}", commit.unwrap_or_default())
 }
 
 /// A value of a scenario that is another one in another scenario.

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::folder::{Contents, Folder, FolderError, failed, gone, json};
-use super::manifest::{Difference, compare};
+use super::manifest::{Difference, compare, made_by};
 use super::picture;
+use super::results::PAGE;
 use crate::metrics::comparison::{Comparison, Trials};
 
 const STUDY: &str = "study.json";
@@ -46,6 +47,12 @@ impl StudyManifest {
             plan,
             settings,
         }
+    }
+
+    /// The version of desim and the commit that it was built from, where that is known.
+    #[must_use]
+    pub fn made_by(&self) -> String {
+        made_by(&self.version, self.commit.as_deref())
     }
 
     /// What keeps results of `self` from being results of `asked`, a line each.
@@ -87,6 +94,12 @@ impl StudyFolder {
             .take_while(|path| !path.as_os_str().is_empty() && !path.exists());
         let new = new.map(Path::to_owned).collect();
         Self { dir, new }
+    }
+
+    /// Whether `dir` holds a study.
+    #[must_use]
+    pub fn is_at(dir: &Path) -> bool {
+        dir.join(STUDY).is_file()
     }
 
     /// Its path.
@@ -157,6 +170,14 @@ impl StudyFolder {
         self.write(COMPARISON, &json(comparison))
     }
 
+    /// Puts the page of charts into the folder.
+    ///
+    /// # Errors
+    /// If the file system refuses.
+    pub fn keep_page(&self, page: &str) -> Result<(), FolderError> {
+        self.write(PAGE, page.as_bytes())
+    }
+
     #[cfg(feature = "parquet")]
     fn write_table(&self, comparison: &Comparison, trials: &[Trials]) -> Result<(), FolderError> {
         let (path, unfinished) = (self.dir.join(TABLE), self.dir.join(UNFINISHED));
@@ -172,7 +193,7 @@ impl StudyFolder {
     /// Names of the files that are in it, without the settings' folders.
     #[must_use]
     pub fn files(&self) -> Vec<&'static str> {
-        let all = [COMPARISON, TABLE, PARETO, STUDY];
+        let all = [COMPARISON, TABLE, PARETO, PAGE, STUDY];
         all.into_iter().filter(|name| self.dir.join(name).exists()).collect()
     }
 
@@ -191,7 +212,7 @@ impl StudyFolder {
             // Whatever else has come into it meanwhile keeps it.
             let _ = fs::remove_dir(folder.path());
         }
-        for name in [COMPARISON, TABLE, PARETO, UNFINISHED, STUDY] {
+        for name in [COMPARISON, TABLE, PARETO, PAGE, UNFINISHED, STUDY] {
             let path = self.dir.join(name);
             gone(fs::remove_file(&path)).map_err(failed("delete", &path))?;
         }

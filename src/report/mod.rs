@@ -13,6 +13,6 @@ mod terminal;
 
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
-pub use html::{PAGE_MARK, PageInput, page};
+pub use html::{PAGE_MARK, PageInput, page, study_page};
 pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};

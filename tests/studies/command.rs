@@ -212,6 +212,58 @@ fn results_of_another_study_are_refused_and_replaced_only_by_force() {
 }
 
 #[test]
+fn a_finished_study_is_reported_again_with_a_page_that_goes_with_its_results() {
+    let dir = place();
+    let page = dir.path().join("results/patience/report.html");
+    let unfinished = desim(dir.path(), &["report", "results/patience"]).assert().code(2);
+    assert!(!text(&unfinished.get_output().stderr).contains("panicked"));
+    let compared = desim(dir.path(), &["compare", "study.ron"]).assert().success();
+    let before = bytes(&dir.path().join("results"));
+
+    let reported = desim(dir.path(), &["report", "results/patience"]).assert().success();
+    let shown = text(&reported.get_output().stdout);
+    let body = |text: &str| text.split("\n  results ").next().unwrap().to_owned();
+    assert_eq!(body(&shown), body(&text(&compared.get_output().stdout)));
+    assert!(shown.contains("report.html"), "{shown}");
+    assert!(fs::read_to_string(&page).unwrap().contains("Does patience pay?"));
+    let json = desim(dir.path(), &["report", "results/patience", "--format", "json"])
+        .assert()
+        .success();
+    assert_eq!(
+        json.get_output().stdout,
+        fs::read(dir.path().join("results/patience/comparison.json")).unwrap()
+    );
+    let mut after = bytes(&dir.path().join("results"));
+    after.remove("patience/report.html");
+    assert!(after == before, "reporting changes nothing else");
+
+    let both = desim(dir.path(), &["report", "results/patience", "results/patience/short"])
+        .assert()
+        .code(2);
+    assert!(text(&both.get_output().stderr).contains("reported alone"));
+    desim(dir.path(), &["compare", "study.ron", "--quiet", "--force"])
+        .assert()
+        .success();
+    assert!(!page.exists(), "a page of results that are gone is gone with them");
+}
+
+#[test]
+fn a_study_that_is_not_finished_is_not_reported() {
+    let dir = place();
+    desim(dir.path(), &["compare", "study.ron", "--quiet"])
+        .assert()
+        .success();
+    let manifest = dir.path().join("results/patience/study.json");
+    let unfinished = fs::read_to_string(&manifest)
+        .unwrap()
+        .replace("\"finished\": true", "\"finished\": false");
+    fs::write(&manifest, unfinished).unwrap();
+    let refused = desim(dir.path(), &["report", "results/patience"]).assert().code(2);
+    assert!(text(&refused.get_output().stderr).contains("not finished: go on with it by `desim compare`"));
+    assert!(!dir.path().join("results/patience/report.html").exists());
+}
+
+#[test]
 fn a_folder_with_anything_else_in_it_is_left_alone() {
     let dir = place();
     fs::create_dir(dir.path().join("mine")).unwrap();

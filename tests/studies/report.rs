@@ -4,7 +4,7 @@ use std::path::Path;
 
 use desim::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials};
 use desim::metrics::figures::{Better, Figure, Sample};
-use desim::report::{ComparisonInput, comparison, describe};
+use desim::report::{ComparisonInput, comparison, describe, study_page};
 
 fn figure(key: &str, name: &str, unit: &'static str, better: Better, is_ratio: bool) -> Figure {
     Figure {
@@ -143,4 +143,51 @@ fn a_comparison_reads_back_from_its_json() {
     let json = serde_json::to_string(&compared).unwrap();
     let again: Comparison = serde_json::from_str(&json).unwrap();
     assert_eq!(again, compared);
+}
+
+/// Headings, captions and charts of a page, without its data.
+fn outline(page: &str) -> String {
+    let start = page.find("<body>").unwrap();
+    let mut lines = Vec::new();
+    for part in page[start..].split('<').skip(1) {
+        let (tag, text) = part.split_once('>').unwrap_or((part, ""));
+        let name = tag.split(' ').next().unwrap_or_default();
+        match name {
+            "h1" | "h2" | "h3" | "figcaption" | "summary" | "p" | "li" if !text.trim().is_empty() => {
+                lines.push(format!("{name}: {}", text.trim()));
+            }
+            "th" | "td" if !tag.contains("class") => lines.push(format!("{name}: {text}")),
+            "div" if tag.contains("plotly-graph-div") => {
+                lines.push(format!("chart: {}", tag.split('"').nth(1).unwrap_or_default()));
+            }
+            // The data of a figure: its head is enough.
+            "tbody" if lines.iter().any(|line| line.starts_with("h3")) => lines.push("data".to_owned()),
+            _ => {}
+        }
+    }
+    let mut in_data = false;
+    lines.retain(|line| {
+        in_data = line == "data" || in_data && line.starts_with("td");
+        !in_data
+    });
+    lines.join("\n")
+}
+
+#[test]
+fn the_page_of_a_study_with_a_reference() {
+    insta::assert_snapshot!(outline(&study_page(&made_up(Some(0), None), "desim 9.9")));
+}
+
+#[test]
+fn the_page_of_a_study_has_a_figure_for_each_comparison_with_its_data_and_asks_for_nothing_from_outside() {
+    let page = study_page(&made_up(None, None), "desim 9.9");
+    let figures = page.matches("<figure ").count();
+    assert_eq!(
+        figures, 6,
+        "two figures by setting and by difference, the curves, the front"
+    );
+    assert_eq!(page.matches("href=\"data:text/csv;").count(), figures);
+    assert_eq!(page.matches("class=\"plotly-graph-div\"").count(), figures);
+    assert!(page.contains("default-src 'none'"));
+    assert_eq!(page, study_page(&made_up(None, None), "desim 9.9"));
 }

@@ -4,6 +4,7 @@ mod tables;
 mod words;
 
 pub use words::describe;
+pub(super) use words::{fitted, label, stopping};
 
 use std::path::Path;
 
@@ -51,7 +52,8 @@ pub fn comparison(input: &ComparisonInput) -> String {
     page.text
 }
 
-fn compared(comparison: &Comparison) -> String {
+/// What was compared, and how.
+pub(super) fn compared(comparison: &Comparison) -> String {
     let trials = comparison.settings.iter().map(|setting| setting.trials);
     let (least, most) = (trials.clone().min().unwrap_or(0), trials.max().unwrap_or(0));
     let trials = if least == most {

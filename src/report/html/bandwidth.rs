@@ -123,8 +123,8 @@ fn spread_figure(id: &'static str, title: &'static str, caption: String, ways: &
         }
     }
     Figure {
-        id,
-        title,
+        id: id.into(),
+        title: title.into(),
         caption,
         panels,
         table,
@@ -234,8 +234,8 @@ pub fn headers(input: &PageInput) -> Figure {
         Some(labels),
     ));
     Figure {
-        id: "headers",
-        title: "Payload and headers",
+        id: "headers".into(),
+        title: "Payload and headers".into(),
         caption: format!(
             "What a robot sends on average {}, split into the bytes of the messages and of their headers, {} for each frame and {} for \
              each message in it; the number is the share of headers. Small messages pay most for their headers: sending several in one \

@@ -132,8 +132,8 @@ pub fn graph(input: &PageInput) -> Option<Figure> {
         ));
     }
     Some(Figure {
-        id: "connectivity",
-        title: "Connectivity over time",
+        id: "connectivity".into(),
+        title: "Connectivity over time".into(),
         caption: format!(
             "First the algebraic connectivity λ₂ of the graph of live robots within range of each other: 0 where it falls apart, larger the \
              harder it is to cut. Then into how many pieces it falls. {}",
@@ -175,8 +175,8 @@ pub fn roles(input: &PageInput) -> Option<Figure> {
     }
     table.rows.first()?;
     Some(Figure {
-        id: "roles",
-        title: "Robots in each role over time",
+        id: "roles".into(),
+        title: "Robots in each role over time".into(),
         caption: format!(
             "How many robots are in each role, whether they are well or have failed. {}",
             input.band_words()

@@ -46,8 +46,8 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
     }
     let total = all().count() as u64;
     Some(Figure {
-        id: "suspicions",
-        title: "Suspicions by verdict and cause",
+        id: "suspicions".into(),
+        title: "Suspicions by verdict and cause".into(),
         caption: format!(
             "Each time that a robot came to believe that another was down, {}: {} times in all. Rows say what to make of it, held against a truth that \
              robots never see: right if the other could not send; out of range, or the observer deaf, if that is what kept its statuses away; else a \
@@ -131,8 +131,8 @@ pub fn times(input: &PageInput) -> Option<Figure> {
     }
     panels.first()?;
     Some(Figure {
-        id: "detection-times",
-        title: "Detection times and mistakes",
+        id: "detection-times".into(),
+        title: "Detection times and mistakes".into(),
         caption: format!(
             "Which share took no longer than so many seconds ({}). Failures count once for each robot that watched; those that were never detected are counted under \
              “What was found”, not here.",

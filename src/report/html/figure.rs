@@ -1,5 +1,7 @@
 //! A figure: charts, the words below them, and their data.
 
+use std::borrow::Cow;
+
 use maud::{Markup, PreEscaped, html};
 use plotly::Plot;
 
@@ -8,9 +10,9 @@ use super::table::DataTable;
 /// A figure.
 pub struct Figure {
     /// Its name in links and files: letters and dashes.
-    pub id: &'static str,
+    pub id: Cow<'static, str>,
     /// What it shows.
-    pub title: &'static str,
+    pub title: Cow<'static, str>,
     /// What a reader sees in it.
     pub caption: String,
     /// Its charts.

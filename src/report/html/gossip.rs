@@ -39,8 +39,8 @@ pub fn spread(input: &PageInput) -> Option<Figure> {
     let hover = "%{y:.1f} % at %{x:.4g} s<extra></extra>";
     plot.add_trace(line("informed", ALL, &curve, LineShape::Hv, hover).show_legend(false));
     Some(Figure {
-        id: "spread",
-        title: "Spread of rumours",
+        id: "spread".into(),
+        title: "Spread of rumours".into(),
         caption: format!(
             "Which share of all pairs of a robot and a rumour {} was informed by when: a robot knows a rumour from its arrival on. All \
              trials in one curve; robots that failed are counted too.",
@@ -77,8 +77,8 @@ pub fn duplicates(input: &PageInput) -> Option<Figure> {
         plot.add_trace(bar);
     }
     Some(Figure {
-        id: "duplicates",
-        title: "Duplicates",
+        id: "duplicates".into(),
+        title: "Duplicates".into(),
         caption: format!(
             "Of the messages of each topic that were delivered {}, the share that told their receiver nothing new, as the protocol \
              judges it: mean over trials. A topic of which nothing was delivered has none.",

@@ -40,8 +40,8 @@ pub fn traffic(input: &PageInput) -> Option<Figure> {
         height: HEIGHT,
     });
     Some(Figure {
-        id: "map",
-        title: "The swarm with its traffic",
+        id: "map".into(),
+        title: "The swarm with its traffic".into(),
         caption: format!(
             "Where the robots of trial {} (seed {}) ended. Grey lines join robots within range of each other ({} m); colour is what a robot \
              sent, and received, in a control step over the whole trial, headers included; shapes are roles{}.",

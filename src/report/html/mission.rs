@@ -5,14 +5,17 @@ use plotly::common::{LineShape, Marker, MarkerSymbol, Mode};
 use plotly::layout::{Axis, AxisRange, HoverMode, RangeMode};
 
 use super::PageInput;
-use super::chart::{Points, axis, band, chart, line, percent_axis, shown};
+use super::chart::{Points, axis, band, chart, line, percent_axis, shown, topic_colour};
 use super::figure::{Figure, Panel};
 use super::table::{Cell, DataTable};
+use crate::metrics::comparison::{Comparison, Setting, Survival};
 use crate::metrics::statistics::{Observation, Step, survival_curve};
 use crate::metrics::{HealingEpisode, Outcome};
 use crate::report::number;
 
 const COLOUR: &str = "#0072b2";
+/// More curves than this are drawn without their bands, which would cover each other.
+const MOST_BANDS: usize = 4;
 
 /// When missions were complete.
 pub fn completion(input: &PageInput) -> Option<Figure> {
@@ -94,6 +97,64 @@ pub fn healing(input: &PageInput) -> Option<Figure> {
         "time since the failure, s",
         "failures mended",
     ))
+}
+
+/// When the trials of each setting were done.
+pub fn by_setting(comparison: &Comparison) -> Option<Figure> {
+    let of = |setting: &'_ Setting| {
+        let survival = setting
+            .figures
+            .0
+            .iter()
+            .find_map(|(_, figure)| figure.survival.clone())?;
+        (!survival.curve.is_empty()).then(|| (setting.label.clone(), survival))
+    };
+    let curves: Vec<(String, Survival)> = comparison.settings.iter().filter_map(of).collect();
+    curves.first()?;
+    let mut table = DataTable::new(&["setting", "control steps", "complete, %", "low, %", "high, %"]);
+    let mut steps: Vec<Step> = curves.iter().flat_map(|(_, survival)| survival.curve.clone()).collect();
+    steps.sort_by(|a, b| a.time.total_cmp(&b.time));
+    let end = steps.last().map_or(0.0, |last| last.time);
+    let across = from_where_it_begins(axis("control steps"), &steps, end);
+    let mut plot = chart(across, percent_axis("trials complete"), HoverMode::Closest);
+    let layout = plot.layout().clone().show_legend(true);
+    plot.set_layout(layout);
+    for (place, (name, survival)) in curves.iter().enumerate() {
+        for step in &survival.curve {
+            let [low, high] = step.band;
+            let shares = [step.time, done(step.survival), done(high), done(low)].map(Cell::from);
+            table
+                .rows
+                .push(std::iter::once(name.as_str().into()).chain(shares).collect());
+        }
+        let points = |share: fn(&Step) -> f64| -> Points {
+            let jumps = survival.curve.iter().map(|step| [step.time, done(share(step))]);
+            std::iter::once([0.0, 0.0]).chain(jumps).collect()
+        };
+        let colour = topic_colour(place);
+        if curves.len() <= MOST_BANDS {
+            let [high, low] = [points(|step| step.band[1]), points(|step| step.band[0])];
+            for edge in band(name, colour, &high, &low, &LineShape::Hv) {
+                plot.add_trace(edge);
+            }
+        }
+        let hover = "%{y:.1f} % by %{x:.5g}<extra>%{fullData.name}</extra>";
+        plot.add_trace(line(name, colour, &points(|step| step.survival), LineShape::Hv, hover));
+    }
+    Some(Figure {
+        id: "completion-by-setting".into(),
+        title: "Time to completion by setting".into(),
+        caption: format!(
+            "The share of trials complete by each control step, after Kaplan and Meier.{}",
+            if curves.len() <= MOST_BANDS {
+                " Bands are Greenwood's of 95 %, on the log(−log) scale."
+            } else {
+                " Greenwood's bands of 95 % are in the table."
+            }
+        ),
+        panels: vec![Panel::new("", plot)],
+        table,
+    })
 }
 
 fn band_words(observations: usize) -> &'static str {
@@ -189,8 +250,8 @@ fn curve(
         plot.add_trace(marks);
     }
     Figure {
-        id,
-        title,
+        id: id.into(),
+        title: title.into(),
         caption,
         panels: vec![Panel::new("", plot)],
         table,

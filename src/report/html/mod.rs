@@ -1,8 +1,9 @@
 //! Finished results as one page that needs nothing but itself: charts that answer to the pointer, each with its caption,
 //! its data as a table and as a file to take away.
 //!
-//! Every figure is a function from [`PageInput`] to a [`Figure`], or to none where the results have nothing to show. The
-//! page ([`page()`]) only puts them in order. The same results give the same bytes.
+//! Every figure is a function from [`PageInput`], or of a study from its
+//! [`Comparison`](crate::metrics::comparison::Comparison), to a `Figure`, or to none where the results have nothing to
+//! show. The pages ([`page()`], [`study_page`]) only put them in order. The same results give the same bytes.
 
 mod bandwidth;
 mod chart;
@@ -15,12 +16,16 @@ mod map;
 mod mission;
 mod overview;
 mod page;
+mod pareto;
 mod radio;
 mod robots;
 mod series;
+mod settings;
+mod study;
 mod table;
 
 pub use page::{PAGE_MARK, page};
+pub use study::study_page;
 
 use crate::metrics::{Summary, TrialRecord};
 use crate::scenario::Scenario;

@@ -58,7 +58,7 @@ pub fn page(input: &PageInput) -> String {
 }
 
 /// The document around a page's body: style, the script of the charts, our own.
-fn document(title: &str, body: &Markup) -> String {
+pub(super) fn document(title: &str, body: &Markup) -> String {
     let document = html! {
         (DOCTYPE)
         html lang="en" {

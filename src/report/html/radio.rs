@@ -50,8 +50,8 @@ pub fn lost(input: &PageInput) -> Figure {
     }
     let total: u64 = frames.total.lost.0.iter().map(|(_, frames)| frames).sum();
     Figure {
-        id: "lost",
-        title: "Lost frames by cause",
+        id: "lost".into(),
+        title: "Lost frames by cause".into(),
         caption: format!(
             "Of the copies of frames that were offered to robots in range {}, the share that was lost, by cause. A frame that five robots could hear \
              is five copies, each with a fate of its own. In all, {} of {} copies were lost.",
@@ -93,8 +93,8 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
     plot.add_trace(line("copies", ALL, &curve, LineShape::Hv, hover).show_legend(false));
     plot.add_trace(quantiles(&all));
     Some(Figure {
-        id: "latency",
-        title: "Latency as felt",
+        id: "latency".into(),
+        title: "Latency as felt".into(),
         caption: format!(
             "Which share of the {} copies that arrived {} took no longer than so many milliseconds, from the start of its transmission to its arrival; dots are the median and the 95th and \
              99th percentile. Times are those of buckets at most 1/128 of their lower end wide.{}",

@@ -74,8 +74,8 @@ pub fn distribution(input: &PageInput) -> Figure {
         panels.push(Panel::new(heading, plot));
     }
     Figure {
-        id: "bytes-by-robot",
-        title: "Bytes by robot",
+        id: "bytes-by-robot".into(),
+        title: "Bytes by robot".into(),
         caption: format!(
             "Which share of the robots sent, and received, no more than so many bytes a control step, on all topics, headers \
              included, {}. A steep curve means that all carry about the same.{}",
@@ -149,8 +149,8 @@ pub fn by_number(input: &PageInput) -> Option<Figure> {
         panels.push(Panel::new(heading, plot));
     }
     Some(Figure {
-        id: "bytes-by-robot-number",
-        title: "Bytes of each robot",
+        id: "bytes-by-robot-number".into(),
+        title: "Bytes of each robot".into(),
         caption: "The same robots by their numbers: the median over trials, and a line from the least to the most of any trial. A robot \
                   that stands out in every trial has a burden by its task, not by chance."
             .to_owned(),
@@ -199,8 +199,8 @@ pub fn lorenz(input: &PageInput) -> Figure {
         ));
     }
     Figure {
-        id: "load",
-        title: "How evenly robots share the load",
+        id: "load".into(),
+        title: "How evenly robots share the load".into(),
         caption: format!(
             "Lorenz curves: which share of all bytes the robots with the fewest carry, mean over trials. The further a curve hangs \
              below the diagonal, the less even the load. The Gini coefficient, twice the area between, is {}; 0 where all carry the same.",

@@ -65,8 +65,8 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
         panels.push(Panel::new(heading, plot));
     }
     Some(Figure {
-        id: "series-by-topic",
-        title: "Bytes over time, by topic",
+        id: "series-by-topic".into(),
+        title: "Bytes over time, by topic".into(),
         caption: format!(
             "What a robot sends and receives in a control step, headers included, mean over robots, from one sample to the next, topic by \
              topic. {}",
@@ -162,8 +162,8 @@ pub fn over_robots(input: &PageInput) -> Option<Figure> {
         panels.push(Panel::new(heading, plot));
     }
     Some(Figure {
-        id: "series-over-robots",
-        title: "Bytes over time, from robot to robot",
+        id: "series-over-robots".into(),
+        title: "Bytes over time, from robot to robot".into(),
         caption: "How far robots are apart in what they send and receive in a control step on all topics together, headers included: the \
                   line is the median robot, the band reaches from the robot with the least to that with the most. Each is the median over the trials \
                   that still run."

@@ -1,0 +1,133 @@
+//! A study as one page.
+
+use maud::{Markup, html};
+
+use super::figure::Figure;
+use super::page::document;
+use super::settings::{by_setting, capital, differences};
+use super::{mission, pareto};
+use crate::metrics::comparison::{Comparison, Setting};
+use crate::metrics::figures;
+use crate::report::comparison::{compared, fitted, stopping};
+use crate::report::number::NOTHING;
+
+/// A part of the page.
+struct Section {
+    id: String,
+    title: String,
+    figures: Vec<Figure>,
+}
+
+/// The page of a study, [described](crate::report::describe) and run by the version `made_by`.
+#[must_use]
+pub fn study_page(comparison: &Comparison, made_by: &str) -> String {
+    let sections = sections(comparison);
+    let title = format!("{}: settings compared", comparison.study);
+    let body = html! {
+        header {
+            p class="kind" { "Settings compared" }
+            h1 { (comparison.study) }
+            @if let Some(question) = &comparison.question { p class="question" { (question) } }
+            p class="ran" {
+                (compared(comparison)) "."
+                @if let Some(stopped) = &comparison.stopping { " " (stopping(stopped, comparison)) }
+            }
+            nav { @for section in &sections { a href={ "#" (section.id) } { (section.title) } } }
+        }
+        main {
+            section id="found" {
+                h2 { "What was found" }
+                p { (comparison.finding) }
+                (overview(comparison))
+                p class="note" { "Figures in brackets are 95 % intervals over trials." }
+                (in_words(comparison))
+            }
+            (numbered(comparison, &sections))
+        }
+        footer { (made_by) ". This page needs no network: charts, data and script are in it." }
+    };
+    document(&title, &body)
+}
+
+fn measured(comparison: &Comparison) -> impl Iterator<Item = &figures::Figure> {
+    comparison.compared.iter().filter_map(|key| comparison.figure(key))
+}
+
+fn sections(comparison: &Comparison) -> Vec<Section> {
+    let of_figure = |figure: &figures::Figure| Section {
+        id: figure.key.clone(),
+        title: capital(&figure.name),
+        figures: [by_setting(comparison, figure), differences(comparison, figure)]
+            .into_iter()
+            .flatten()
+            .collect(),
+    };
+    let whole = |id: &str, title: &str, figure: Option<Figure>| Section {
+        id: id.to_owned(),
+        title: title.to_owned(),
+        figures: figure.into_iter().collect(),
+    };
+    let mut sections: Vec<Section> = measured(comparison).map(of_figure).collect();
+    sections.push(whole("times", "Time to completion", mission::by_setting(comparison)));
+    sections.push(whole("front", "Pareto front", pareto::plane(comparison)));
+    sections.retain(|section| !section.figures.is_empty());
+    sections
+}
+
+/// Settings and what is compared of them.
+fn overview(comparison: &Comparison) -> Markup {
+    let value = |setting: &Setting, figure: &figures::Figure| {
+        setting
+            .figure(&figure.key)
+            .map_or(NOTHING.to_owned(), |figure| fitted(&figure.estimate))
+    };
+    html! {
+        div class="scroll whole" {
+            table {
+                thead {
+                    tr {
+                        th scope="col" { (comparison.factors.iter().map(|factor| factor.name.as_str()).collect::<Vec<_>>().join(", ")) }
+                        @for figure in measured(comparison) {
+                            th scope="col" { (figure.name) @if figure.unit.as_ref() != "1" { ", " (figure.unit) } }
+                        }
+                    }
+                }
+                tbody {
+                    @for setting in &comparison.settings {
+                        tr {
+                            th scope="row" {
+                                (setting.label)
+                                @if comparison.reference.as_ref() == Some(&setting.name) { " (reference)" }
+                            }
+                            @for figure in measured(comparison) { td { (value(setting, figure)) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Every difference in a sentence.
+fn in_words(comparison: &Comparison) -> Markup {
+    html! {
+        details {
+            summary { "Every difference in words" }
+            ul { @for pair in comparison.pairs.iter().filter(|pair| !pair.words.is_empty()) { li { (pair.words) } } }
+        }
+    }
+}
+
+fn numbered(comparison: &Comparison, sections: &[Section]) -> Markup {
+    let mut number = 0;
+    html! {
+        @for section in sections {
+            section id=(section.id) {
+                h2 { (section.title) }
+                @for figure in &section.figures {
+                    ({ number += 1; figure.markup(number, &comparison.study) })
+                }
+            }
+        }
+    }
+}
