@@ -4,10 +4,10 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::Xxh3;
 
 use super::manifest::{FileEntry, Manifest};
+use super::place::{FolderError, Place, failed, gone, json};
 use crate::metrics::Summary;
 
 const MANIFEST: &str = "manifest.json";
@@ -18,9 +18,7 @@ const TRIALS: &str = ".trials";
 /// A folder that holds, or will hold, the results of one experiment.
 #[derive(Clone, Debug)]
 pub struct Folder {
-    dir: PathBuf,
-    /// The folder and those around it that were not there at first, from the inside out.
-    new: Vec<PathBuf>,
+    place: Place,
 }
 
 /// What is in a folder.
@@ -33,61 +31,23 @@ pub enum Contents {
     Results(Manifest),
 }
 
-/// A folder cannot hold results.
-#[derive(Debug, thiserror::Error)]
-pub enum FolderError {
-    /// It is a file.
-    #[error("{} is not a folder: choose another with --out", .0.display())]
-    NotAFolder(PathBuf),
-    /// Something else is in it.
-    #[error("{} holds files that are no results of desim ({found}): choose an empty folder with --out", dir.display())]
-    Foreign {
-        /// The folder.
-        dir: PathBuf,
-        /// One of the files.
-        found: String,
-    },
-    /// Its manifest or its summary is not one.
-    #[error("{} is damaged, or of another version ({reason}): choose another folder with --out", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        reason: String,
-    },
-    /// The file system refused.
-    #[error("cannot {action} {}: {source}", path.display())]
-    Io {
-        /// What was attempted.
-        action: &'static str,
-        /// On which file.
-        path: PathBuf,
-        /// What the system said.
-        source: io::Error,
-    },
-}
-
 impl Folder {
     /// The folder at `dir`, which need not exist.
     #[must_use]
     pub fn new(dir: PathBuf) -> Self {
-        let new = dir
-            .ancestors()
-            .take_while(|path| !path.as_os_str().is_empty() && !path.exists());
-        let new = new.map(Path::to_owned).collect();
-        Self { dir, new }
+        Self { place: Place::new(dir) }
     }
 
     /// Its path.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.dir
+        self.place.path()
     }
 
     /// Where finished trials wait for the others, and files until they are whole.
     #[must_use]
     pub fn trials(&self) -> PathBuf {
-        self.dir.join(TRIALS)
+        self.path().join(TRIALS)
     }
 
     /// What is in it. Reads only.
@@ -95,31 +55,31 @@ impl Folder {
     /// # Errors
     /// If it is no folder, or holds anything but results, or cannot be read.
     pub fn contents(&self) -> Result<Contents, FolderError> {
-        let entries = match fs::read_dir(&self.dir) {
+        let entries = match fs::read_dir(self.path()) {
             Ok(entries) => entries,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Contents::Nothing),
             Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
-                return Err(FolderError::NotAFolder(self.dir.clone()));
+                return Err(FolderError::NotAFolder(self.path().to_owned()));
             }
-            Err(error) => return Err(failed("read", &self.dir)(error)),
+            Err(error) => return Err(failed("read", self.path())(error)),
         };
         let mut names = Vec::new();
         for entry in entries {
             names.push(
                 entry
-                    .map_err(failed("read", &self.dir))?
+                    .map_err(failed("read", self.path()))?
                     .file_name()
                     .to_string_lossy()
                     .into_owned(),
             );
         }
         if names.iter().any(|name| name == MANIFEST) {
-            return self.read(MANIFEST).map(Contents::Results);
+            return self.place.read(MANIFEST).map(Contents::Results);
         }
         match names.iter().filter(|&name| name != TRIALS).min() {
             None => Ok(Contents::Nothing),
             Some(found) => Err(FolderError::Foreign {
-                dir: self.dir.clone(),
+                dir: self.path().to_owned(),
                 found: found.clone(),
             }),
         }
@@ -147,14 +107,9 @@ impl Folder {
             .filter(|name| !name.contains(['/', '\\']))
             .map(String::as_str);
         for name in named.chain([MANIFEST]) {
-            let path = self.dir.join(name);
-            gone(fs::remove_file(&path)).map_err(failed("delete", &path))?;
+            self.place.delete(name)?;
         }
-        // Whatever else has come into them meanwhile keeps them.
-        self.new
-            .iter()
-            .take_while(|path| fs::remove_dir(path).is_ok())
-            .for_each(drop);
+        self.place.leave();
         Ok(())
     }
 
@@ -190,7 +145,7 @@ impl Folder {
     /// # Errors
     /// If the file system refuses.
     pub fn place(&self, name: &str) -> Result<(), FolderError> {
-        let path = self.dir.join(name);
+        let path = self.path().join(name);
         fs::rename(self.trials().join(name), &path).map_err(failed("write", &path))
     }
 
@@ -199,34 +154,7 @@ impl Folder {
     /// # Errors
     /// If it cannot be read.
     pub fn summary(&self) -> Result<Summary, FolderError> {
-        self.read(SUMMARY)
-    }
-
-    fn read<T: DeserializeOwned>(&self, name: &str) -> Result<T, FolderError> {
-        let path = self.dir.join(name);
-        let bytes = fs::read(&path).map_err(failed("read", &path))?;
-        serde_json::from_slice(&bytes).map_err(|error| FolderError::Unreadable {
-            path,
-            reason: error.to_string(),
-        })
-    }
-}
-
-/// A value as an indented JSON document.
-///
-/// # Panics
-/// Never, for the types of this module: their keys are text.
-pub fn json(value: &impl serde::Serialize) -> Vec<u8> {
-    let mut bytes = serde_json::to_vec_pretty(value).expect("keys are text");
-    bytes.push(b'\n');
-    bytes
-}
-
-/// An error to leave alone: what was to be deleted is not there.
-pub fn gone(result: io::Result<()>) -> io::Result<()> {
-    match result {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        other => other,
+        self.place.read(SUMMARY)
     }
 }
 
@@ -245,10 +173,4 @@ pub fn measure(path: &Path) -> io::Result<FileEntry> {
         hash.update(&chunk[..read]);
         bytes += read as u64;
     }
-}
-
-/// Says what failed on which file.
-pub fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FolderError {
-    let path = path.to_owned();
-    move |source| FolderError::Io { action, path, source }
 }

@@ -9,6 +9,7 @@ mod folder;
 mod manifest;
 mod names;
 mod picture;
+mod place;
 #[cfg_attr(not(feature = "parquet"), path = "no_read.rs")]
 mod read;
 mod results;
@@ -19,10 +20,11 @@ mod table;
 mod tables;
 mod write;
 
-pub use folder::{Contents, Folder, FolderError, json};
+pub use folder::{Contents, Folder};
 pub use manifest::{Difference, FileEntry, Manifest, TrialEntry};
 pub use names::Names;
 pub use picture::Scene;
+pub use place::{FolderError, json};
 pub use read::NameLists;
 pub use results::{PAGE, Results, ResultsError, keep_page};
 pub use study::{StudyFolder, StudyManifest};

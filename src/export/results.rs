@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 
 use xxhash_rust::xxh3::xxh3_128;
 
-use super::folder::{Contents, Folder, FolderError, SUMMARY, measure};
+use super::folder::{Contents, Folder, SUMMARY, measure};
 use super::manifest::{Difference, FileEntry, Manifest};
+use super::place::FolderError;
 use super::read::{self, NameLists};
 use crate::metrics::{Summary, TrialRecord};
 use crate::scenario::{Scenario, parse, to_ron};

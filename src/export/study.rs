@@ -1,15 +1,16 @@
 //! The results folder of a study: a results folder for each setting, and what compares them.
 
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::folder::{Contents, Folder, FolderError, failed, gone, json};
+use super::folder::{Contents, Folder};
 use super::manifest::{Difference, compare, made_by};
 use super::picture;
+use super::place::{FolderError, Place, failed, json};
 use super::results::PAGE;
 use crate::metrics::comparison::{Comparison, Trials};
 
@@ -80,20 +81,14 @@ impl StudyManifest {
 /// A folder that holds, or will hold, the results of a study.
 #[derive(Clone, Debug)]
 pub struct StudyFolder {
-    dir: PathBuf,
-    /// The folder and those around it that were not there at first, from the inside out.
-    new: Vec<PathBuf>,
+    place: Place,
 }
 
 impl StudyFolder {
     /// The folder at `dir`, which need not exist.
     #[must_use]
     pub fn new(dir: PathBuf) -> Self {
-        let new = dir
-            .ancestors()
-            .take_while(|path| !path.as_os_str().is_empty() && !path.exists());
-        let new = new.map(Path::to_owned).collect();
-        Self { dir, new }
+        Self { place: Place::new(dir) }
     }
 
     /// Whether `dir` holds a study.
@@ -105,13 +100,13 @@ impl StudyFolder {
     /// Its path.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.dir
+        self.place.path()
     }
 
     /// The results folder of a setting.
     #[must_use]
     pub fn setting(&self, name: &str) -> Folder {
-        Folder::new(self.dir.join(name))
+        Folder::new(self.path().join(name))
     }
 
     /// What it is the result of; `None` if nothing is in it. Reads only.
@@ -119,20 +114,15 @@ impl StudyFolder {
     /// # Errors
     /// If it is no folder, or holds anything but a study, or cannot be read.
     pub fn contents(&self) -> Result<Option<StudyManifest>, FolderError> {
-        let path = self.dir.join(STUDY);
-        match fs::read(&path) {
-            Ok(bytes) => parse(&path, &bytes).map(Some),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => match self.setting("").contents()? {
+        match self.place.find(STUDY) {
+            Ok(None) => match self.setting("").contents()? {
                 Contents::Nothing => Ok(None),
                 Contents::Results(_) => Err(FolderError::Foreign {
-                    dir: self.dir.clone(),
+                    dir: self.path().to_owned(),
                     found: "manifest.json: the results of one scenario".to_owned(),
                 }),
             },
-            Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
-                Err(FolderError::NotAFolder(self.dir.clone()))
-            }
-            Err(error) => Err(failed("read", &path)(error)),
+            found => found,
         }
     }
 
@@ -141,7 +131,7 @@ impl StudyFolder {
     /// # Errors
     /// If the file system refuses.
     pub fn declare(&self, manifest: &StudyManifest) -> Result<(), FolderError> {
-        fs::create_dir_all(&self.dir).map_err(failed("create the folder", &self.dir))?;
+        fs::create_dir_all(self.path()).map_err(failed("create the folder", self.path()))?;
         self.write(STUDY, &json(manifest))
     }
 
@@ -150,12 +140,7 @@ impl StudyFolder {
     /// # Errors
     /// If it cannot be read.
     pub fn comparison(&self) -> Result<Option<Comparison>, FolderError> {
-        let path = self.dir.join(COMPARISON);
-        match fs::read(&path) {
-            Ok(bytes) => parse(&path, &bytes).map(Some),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(failed("read", &path)(error)),
-        }
+        self.place.find(COMPARISON)
     }
 
     /// Writes what compares the settings: the table and the picture first, so that a comparison that is there is all there.
@@ -180,7 +165,7 @@ impl StudyFolder {
 
     #[cfg(feature = "parquet")]
     fn write_table(&self, comparison: &Comparison, trials: &[Trials]) -> Result<(), FolderError> {
-        let (path, unfinished) = (self.dir.join(TABLE), self.dir.join(UNFINISHED));
+        let (path, unfinished) = (self.path().join(TABLE), self.path().join(UNFINISHED));
         super::comparison_table::write(&unfinished, comparison, trials).map_err(failed("write", &path))?;
         fs::rename(&unfinished, &path).map_err(failed("write", &path))
     }
@@ -194,7 +179,7 @@ impl StudyFolder {
     #[must_use]
     pub fn files(&self) -> Vec<&'static str> {
         let all = [COMPARISON, TABLE, PARETO, PAGE, STUDY];
-        all.into_iter().filter(|name| self.dir.join(name).exists()).collect()
+        all.into_iter().filter(|name| self.path().join(name).exists()).collect()
     }
 
     /// Deletes what `manifest` says that desim put here, and the folders that were not there before.
@@ -213,29 +198,18 @@ impl StudyFolder {
             let _ = fs::remove_dir(folder.path());
         }
         for name in [COMPARISON, TABLE, PARETO, PAGE, UNFINISHED, STUDY] {
-            let path = self.dir.join(name);
-            gone(fs::remove_file(&path)).map_err(failed("delete", &path))?;
+            self.place.delete(name)?;
         }
-        self.new
-            .iter()
-            .take_while(|path| fs::remove_dir(path).is_ok())
-            .for_each(drop);
+        self.place.leave();
         Ok(())
     }
 
     /// Writes a file whole or not at all.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
-        let (path, unfinished) = (self.dir.join(name), self.dir.join(UNFINISHED));
+        let (path, unfinished) = (self.path().join(name), self.path().join(UNFINISHED));
         let written = File::create(&unfinished).and_then(|mut file| file.write_all(bytes));
         written
             .and_then(|()| fs::rename(&unfinished, &path))
             .map_err(failed("write", &path))
     }
-}
-
-fn parse<T: serde::de::DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, FolderError> {
-    serde_json::from_slice(bytes).map_err(|error| FolderError::Unreadable {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })
 }

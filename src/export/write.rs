@@ -1,9 +1,10 @@
 //! From the finished trials of an experiment to its results folder.
 
-use super::folder::{Contents, Folder, FolderError, SUMMARY, failed, json};
+use super::folder::{Contents, Folder, SUMMARY};
 use super::manifest::{Manifest, TrialEntry};
 use super::names::Names;
 use super::picture::Scene;
+use super::place::{FolderError, failed, json};
 use super::tables::Tables;
 use crate::experiment::{FinishedTrial, Parts, PartsError};
 use crate::metrics::{Summary, TrialRecord};

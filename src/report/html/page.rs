@@ -1,5 +1,7 @@
 //! The page around the figures.
 
+use std::borrow::Cow;
+
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plotly::Plot;
 
@@ -17,11 +19,14 @@ const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 
 /// By what a page of desim is known, near its beginning.
 pub const PAGE_MARK: &str = "<meta name=\"generator\" content=\"desim\">";
 
-/// A part of the page.
-struct Section {
-    id: &'static str,
-    title: &'static str,
-    figures: Vec<Figure>,
+/// A part of a page.
+pub(super) struct Section {
+    /// Its name in links.
+    pub id: Cow<'static, str>,
+    /// What it is about.
+    pub title: Cow<'static, str>,
+    /// Its figures.
+    pub figures: Vec<Figure>,
 }
 
 /// The page, whole.
@@ -47,7 +52,7 @@ pub fn page(input: &PageInput) -> String {
                 }
                 p class="note" { "Figures in brackets are 95 % intervals over trials." }
             }
-            (numbered(input, &sections))
+            (numbered(&input.scenario.name, &sections))
             (scenario(input))
         }
         footer {
@@ -136,21 +141,22 @@ fn sections(input: &PageInput) -> Vec<Section> {
         ("place", "Map", vec![map::traffic(input)]),
     ];
     let sections = all.into_iter().map(|(id, title, figures)| Section {
-        id,
-        title,
+        id: id.into(),
+        title: title.into(),
         figures: figures.into_iter().flatten().collect(),
     });
     sections.filter(|section| !section.figures.is_empty()).collect()
 }
 
-fn numbered(input: &PageInput, sections: &[Section]) -> Markup {
+/// Sections with their figures numbered throughout, whose data files are named after `name`.
+pub(super) fn numbered(name: &str, sections: &[Section]) -> Markup {
     let mut number = 0;
     html! {
         @for section in sections {
             section id=(section.id) {
                 h2 { (section.title) }
                 @for figure in &section.figures {
-                    ({ number += 1; figure.markup(number, &input.scenario.name) })
+                    ({ number += 1; figure.markup(number, name) })
                 }
             }
         }

@@ -3,20 +3,13 @@
 use maud::{Markup, html};
 
 use super::figure::Figure;
-use super::page::document;
+use super::page::{Section, document, numbered};
 use super::settings::{by_setting, capital, differences};
 use super::{mission, pareto};
 use crate::metrics::comparison::{Comparison, Setting};
 use crate::metrics::figures;
 use crate::report::comparison::{compared, fitted, stopping};
 use crate::report::number::NOTHING;
-
-/// A part of the page.
-struct Section {
-    id: String,
-    title: String,
-    figures: Vec<Figure>,
-}
 
 /// The page of a study, [described](crate::report::describe) and run by the version `made_by`.
 #[must_use]
@@ -42,7 +35,7 @@ pub fn study_page(comparison: &Comparison, made_by: &str) -> String {
                 p class="note" { "Figures in brackets are 95 % intervals over trials." }
                 (in_words(comparison))
             }
-            (numbered(comparison, &sections))
+            (numbered(&comparison.study, &sections))
         }
         footer { (made_by) ". This page needs no network: charts, data and script are in it." }
     };
@@ -55,16 +48,16 @@ fn measured(comparison: &Comparison) -> impl Iterator<Item = &figures::Figure> {
 
 fn sections(comparison: &Comparison) -> Vec<Section> {
     let of_figure = |figure: &figures::Figure| Section {
-        id: figure.key.clone(),
-        title: capital(&figure.name),
+        id: figure.key.clone().into(),
+        title: capital(&figure.name).into(),
         figures: [by_setting(comparison, figure), differences(comparison, figure)]
             .into_iter()
             .flatten()
             .collect(),
     };
-    let whole = |id: &str, title: &str, figure: Option<Figure>| Section {
-        id: id.to_owned(),
-        title: title.to_owned(),
+    let whole = |id: &'static str, title: &'static str, figure: Option<Figure>| Section {
+        id: id.into(),
+        title: title.into(),
         figures: figure.into_iter().collect(),
     };
     let mut sections: Vec<Section> = measured(comparison).map(of_figure).collect();
@@ -114,20 +107,6 @@ fn in_words(comparison: &Comparison) -> Markup {
         details {
             summary { "Every difference in words" }
             ul { @for pair in comparison.pairs.iter().filter(|pair| !pair.words.is_empty()) { li { (pair.words) } } }
-        }
-    }
-}
-
-fn numbered(comparison: &Comparison, sections: &[Section]) -> Markup {
-    let mut number = 0;
-    html! {
-        @for section in sections {
-            section id=(section.id) {
-                h2 { (section.title) }
-                @for figure in &section.figures {
-                    ({ number += 1; figure.markup(number, &comparison.study) })
-                }
-            }
         }
     }
 }
