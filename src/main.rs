@@ -6,7 +6,7 @@ use clap::Parser;
 use desim::cli::{self, Cli, log};
 use mimalloc::MiMalloc;
 
-/// Of a swarm of tens of thousands the memory lies in huge pages, which takes a fifth off a delivery.
+/// Of a swarm of tens of thousands the memory lies in huge pages, which takes a sixth off a delivery.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 

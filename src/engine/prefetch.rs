@@ -2,8 +2,8 @@
 //!
 //! In a swarm that outgrows the processor's cache nearly every wake finds its robot's state in main memory, a tenth of a
 //! microsecond away, and the simulator does little but wait. Which robots wake next is known, though, and so is who hears a
-//! frame before its fates are drawn: what is asked for then is there in time. At 20,480 robots this takes a third off the cost
-//! of a delivery; nothing depends on it, and where the processor has no such instruction it does nothing.
+//! frame before its fates are drawn: what is asked for then is there in time. At 20,480 robots this takes more than a third off
+//! the cost of a delivery; nothing depends on it, and where the processor has no such instruction it does nothing.
 
 /// Swarms up to so many robots stay in the cache, at a kilobyte or two a robot: asking would only cost time.
 const CACHED: usize = 2_000;
