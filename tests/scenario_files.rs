@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use desim::cli::check::{Say, check};
+use desim::protocol::CompletionConfig;
 use desim::protocol::backbone::TargetsConfig;
 use desim::radio::{LatencyConfig, LossConfig};
 use desim::scenario::{Override, ProtocolConfig, Report, Scenario, json_schema, load, parse, question, to_ron};
@@ -311,6 +312,31 @@ fn the_mistake_of_too_many_brackets() {
 #[test]
 fn the_mistake_of_another_kind_of_value() {
     insta::assert_snapshot!(shown("Bernoulli(0.2)", "0.2"));
+}
+
+#[test]
+fn a_hold_said_in_the_metrics_is_the_protocols_completion() {
+    let completion = |sets: &[&str]| with(sets).completion();
+    let held = |seconds| CompletionConfig::Held(desim::quantity::NonNegative::new(seconds));
+    assert_eq!(completion(&[]), held(10.0));
+    assert_eq!(completion(&["metrics.hold=2.5"]), held(2.5));
+    assert_eq!(completion(&["protocol.completion=Held(4)"]), held(4.0));
+    assert_eq!(
+        completion(&["protocol.completion=EachVisited"]),
+        CompletionConfig::EachVisited
+    );
+    let older = with(&["metrics.hold=2.5"]);
+    assert_eq!(
+        older,
+        with(&["protocol.completion=Held(2.5)"]),
+        "said one way, and another"
+    );
+    assert!(to_ron(&older).contains("completion: Held(2.5)"));
+}
+
+#[test]
+fn the_mistake_of_two_ways_to_say_when_a_mission_is_complete() {
+    insta::assert_snapshot!(refused(&["metrics.hold=1.0", "protocol.completion=Reached"]));
 }
 
 #[test]

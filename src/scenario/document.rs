@@ -21,6 +21,11 @@ pub trait Document: DeserializeOwned + Serialize + JsonSchema {
     /// What no field shows on its own.
     fn problems(&self) -> Vec<Problem>;
 
+    /// The same, with what it says in an older way said as of now.
+    fn settled(self) -> Self {
+        self
+    }
+
     /// The whole of it as text, defaults included.
     fn to_ron(&self) -> String;
 }
@@ -40,6 +45,10 @@ impl Document for Scenario {
 
     fn problems(&self) -> Vec<Problem> {
         problems(self)
+    }
+
+    fn settled(self) -> Self {
+        self.settled()
     }
 
     fn to_ron(&self) -> String {

@@ -42,7 +42,6 @@ use crate::engine::Span;
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
-use crate::protocol::Protocol as _;
 use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
@@ -50,6 +49,7 @@ use crate::protocol::gossip::GossipConfig;
 use crate::protocol::heartbeat::Heartbeat;
 use crate::protocol::rumor::{Rumor, RumorConfig};
 use crate::protocol::wander::WanderConfig;
+use crate::protocol::{CompletionConfig, Protocol as _};
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
 
@@ -103,6 +103,31 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// When its mission is complete: as its protocol says, else held for as long as the metrics say, else for 10 s.
+    #[must_use]
+    pub fn completion(&self) -> CompletionConfig {
+        let said = match &self.protocol {
+            ProtocolConfig::Backbone(backbone) => backbone.completion,
+            ProtocolConfig::Rumor(rumor) => rumor.completion,
+            ProtocolConfig::Heartbeat => None,
+        };
+        let held = self.metrics.hold.map(CompletionConfig::Held);
+        said.or(held).unwrap_or_default()
+    }
+
+    /// The same scenario, its completion said where it belongs: with the protocol.
+    fn settled(mut self) -> Self {
+        let completion = self.completion();
+        let said = match &mut self.protocol {
+            ProtocolConfig::Backbone(backbone) => &mut backbone.completion,
+            ProtocolConfig::Rumor(rumor) => &mut rumor.completion,
+            ProtocolConfig::Heartbeat => return self,
+        };
+        *said = Some(completion);
+        self.metrics.hold = None;
+        self
+    }
+
     /// What its failure detector is told of the swarm.
     #[must_use]
     pub fn circumstances(&self) -> Circumstances {

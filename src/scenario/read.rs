@@ -54,7 +54,7 @@ pub(super) fn document<D: Document>(name: &str, text: &str, overrides: &[Overrid
     }
     let document = reader.document();
     match document {
-        Some(document) if reader.diagnostics.is_empty() => Ok(document),
+        Some(document) if reader.diagnostics.is_empty() => Ok(document.settled()),
         _ => Err(reader.report()),
     }
 }

@@ -15,7 +15,7 @@ use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, Tria
 use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, PhaseConfig, WakeConfig};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
-use crate::protocol::{Protocol, Robot};
+use crate::protocol::{CompletionConfig, Protocol, Robot};
 use crate::radio::{Medium, RadioConfig};
 
 const PHASE: Purpose = Purpose::new("control.phase");
@@ -75,6 +75,8 @@ pub struct Setup {
     pub mission: Option<Mission>,
     /// How many rumours all robots are to know, which then is completion; 0 for none.
     pub rumors: usize,
+    /// When the mission, or the spread of the rumours, is complete.
+    pub completion: CompletionConfig,
 }
 
 impl Setup {
@@ -168,6 +170,7 @@ impl Setup {
             control_period: Span::from_secs(self.control.period.get()),
             mission: self.mission.clone(),
             rumors: self.rumors,
+            completion: self.completion,
             // A status may be that much older than the silence that it began, when its latency is long.
             status_memory: self.detector.longest_silence(circumstances) * 2,
             trace: self.trace,

@@ -136,6 +136,7 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         trace: None,
         mission: None,
         rumors: 0,
+        completion: scenario.completion(),
     }
 }
 

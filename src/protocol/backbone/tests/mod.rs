@@ -18,7 +18,8 @@ fn robots(targets: u8) -> Vec<Backbone> {
 }
 
 fn robots_with(targets: u8, gossip: &GossipConfig) -> Vec<Backbone> {
-    let config = ron::from_str(&format!("(targets: Ring(count: {targets}, radius: 4.5))")).unwrap();
+    let config = format!("(targets: Ring(count: {targets}, radius: 4.5), healing: (reserve: 2))");
+    let config = ron::from_str(&config).unwrap();
     let poses: Vec<Pose> = [0.0, 1.2, 0.7, 0.4]
         .map(|x| Pose {
             position: Vec2::new(x, 0.0),
