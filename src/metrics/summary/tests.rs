@@ -268,6 +268,7 @@ fn detection_figures_are_ratios_of_sums_over_trials() {
         cause: Cause::Lost(LossCause::Channel),
         missed: Missed::default(),
         duration: Some(Span::from_secs(duration)),
+        cut_off: false,
     };
     let mut records = [trial(0, 8), trial(1, 6)];
     records[0].detection = DetectionRecord {
