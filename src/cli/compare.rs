@@ -7,6 +7,7 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use serde_json::json;
 
+use super::check::{self, Deny};
 use super::failure::Failure;
 use super::settings::Settings;
 use super::shown::{Format, print_comparison};
@@ -57,6 +58,9 @@ pub struct CompareArguments {
     /// Show no progress and, with `--format text`, no report
     #[arg(long)]
     pub quiet: bool,
+    /// Refuse what `desim check` warns of, for scripts: nothing is run or written
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub deny: Option<Deny>,
     /// Delete the results that are in the folder, and run again
     #[arg(long)]
     pub force: bool,
@@ -76,6 +80,7 @@ fn width(text: &str) -> Result<f64, String> {
 /// If the input is wrong, a run fails or is interrupted, or the results cannot be written.
 pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     let plan = plan(arguments)?;
+    check::heed(&plan.all_warnings(), arguments.deny)?;
     let default_out = || PathBuf::from("results").join(&plan.name);
     let folder = StudyFolder::new(arguments.out.clone().unwrap_or_else(default_out));
     let names = plan.settings.iter().map(|setting| setting.name.clone()).collect();

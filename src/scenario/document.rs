@@ -26,6 +26,11 @@ pub trait Document: DeserializeOwned + Serialize + JsonSchema {
         self
     }
 
+    /// What is allowed and hardly meant, of one that has no problem.
+    fn warnings(&self) -> Vec<Problem> {
+        Vec::new()
+    }
+
     /// The whole of it as text, defaults included.
     fn to_ron(&self) -> String;
 }
@@ -49,6 +54,10 @@ impl Document for Scenario {
 
     fn settled(self) -> Self {
         self.settled()
+    }
+
+    fn warnings(&self) -> Vec<Problem> {
+        super::warnings::warnings(self)
     }
 
     fn to_ron(&self) -> String {
