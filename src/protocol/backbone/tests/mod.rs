@@ -4,6 +4,7 @@ mod gossip;
 mod healing;
 
 use super::*;
+use crate::protocol::control::PhaseConfig;
 use crate::protocol::{Frame, MessageSize, TimerId};
 use rand_philox::Philox;
 
@@ -30,7 +31,10 @@ fn robots_with(targets: u8, gossip: &GossipConfig) -> Vec<Backbone> {
         &config,
         gossip,
         &DetectorConfig::default(),
-        Span::from_secs(0.1),
+        &ControlConfig {
+            phase: PhaseConfig::Together,
+            ..ControlConfig::default()
+        },
         &poses,
         Streams::new(1, 0),
     )
@@ -50,8 +54,12 @@ impl Bench {
     }
 
     fn with(gossip: &GossipConfig, robot: u32, x: f64) -> Self {
+        Self::of(robots_with(1, gossip).remove(robot as usize), x)
+    }
+
+    fn of(robot: Backbone, x: f64) -> Self {
         Self {
-            robot: robots_with(1, gossip).remove(robot as usize),
+            robot,
             x,
             y: 0.0,
             sequence: 0,
