@@ -31,6 +31,8 @@ pub struct Plan {
     pub relevant: f64,
     /// Keys of two figures in whose plane settings are drawn.
     pub pareto: Option<[String; 2]>,
+    /// Where the number of trials stands, if it is a study's own.
+    pub trials_place: Option<Place>,
 }
 
 /// A setting: a level of each factor.
@@ -85,6 +87,7 @@ pub fn load_study(path: &Path) -> Result<Plan, Report> {
         reference: settings.iter().position(|setting| setting.levels == study.reference),
         relevant: study.relevant.get(),
         pareto: study.pareto.clone().map(|(x, y)| [x, y]),
+        trials_place: file.diagnose(Problem::new("trials", "", "")).place,
         settings,
     };
     let problems = figures::problems(&plan, study.also.len());
@@ -137,6 +140,7 @@ pub fn plan_of_files<P: AsRef<Path>>(files: &[P]) -> Result<Plan, Report> {
         reference: None,
         relevant: 0.05,
         pareto: None,
+        trials_place: None,
     };
     plan.figures = figures::usual(&plan);
     Ok(plan)
@@ -174,6 +178,7 @@ impl Plan {
         for setting in &mut self.settings {
             setting.scenario.trials = trials;
         }
+        self.trials_place = None;
         self
     }
 }
