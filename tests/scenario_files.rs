@@ -372,7 +372,7 @@ fn checked(files: &[PathBuf], overrides: &[&str], resolved: bool) -> (bool, Stri
     let overrides: Vec<_> = overrides.iter().map(|text| (*text).to_owned()).collect();
     let mut out = Vec::new();
     let say = if resolved { Say::Resolved } else { Say::Well };
-    let well = check(files, &overrides, say, &mut out).unwrap();
+    let well = check(files, &overrides, say, None, &mut out).unwrap();
     (well, String::from_utf8(out).unwrap())
 }
 
@@ -427,4 +427,76 @@ fn the_schema_is_printed_as_json() {
     desim::cli::schema::schema(false, &mut out).unwrap();
     let printed: serde_json::Value = serde_json::from_slice(&out).unwrap();
     assert_eq!(&printed, json_schema().as_value());
+}
+
+/// What the command says of `BASE` with these lines in place of its mission, and its exit status.
+fn said(command: &[&str], sections: &str) -> (Option<i32>, String, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("base.ron");
+    let mission = "protocol: Backbone(targets: Ring(count: 4, radius: 4.5, links: 2)),";
+    fs::write(&file, BASE.replace(mission, sections)).unwrap();
+    let mut desim = assert_cmd::Command::cargo_bin("desim").unwrap();
+    let output = desim
+        .args(command)
+        .arg(&file)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let left = fs::read_dir(folder.path()).unwrap().count();
+    assert!(
+        output.status.code() != Some(2) || left == 1,
+        "something was left behind"
+    );
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+const UNREAD: &str = "protocol: Heartbeat, motion: (max_speed: 0.05),";
+
+#[test]
+fn a_warning_is_printed_with_place_and_remedy_and_leaves_the_exit_status_0() {
+    let (status, out, _) = said(&["check"], UNREAD);
+    assert_eq!(status, Some(0));
+    for part in [
+        "warning: `motion.max_speed` is set",
+        "base.ron:6:",
+        "leave `motion.max_speed` out",
+        "ok ",
+    ] {
+        assert!(out.contains(part), "{part}: {out}");
+    }
+    let (status, out, err) = said(&["scenario", "--quiet", "--set", "time_limit=2"], UNREAD);
+    assert_eq!((status, out.as_str()), (Some(0), ""));
+    assert!(
+        err.contains("warning: `motion.max_speed`") && err.contains("base.ron:6:"),
+        "{err}"
+    );
+}
+
+#[test]
+fn warnings_that_are_denied_end_in_exit_status_2_and_nothing_is_written() {
+    for command in ["check", "scenario"] {
+        let (status, out, err) = said(&[command, "--deny", "warnings"], UNREAD);
+        let all = format!("{out}{err}");
+        assert_eq!(status, Some(2), "{all}");
+        assert!(
+            all.contains("error: 1 warning, and warnings are denied") && !all.contains("ok "),
+            "{all}"
+        );
+    }
+}
+
+#[test]
+fn warnings_of_a_resolved_scenario_stay_out_of_its_text_and_those_of_json_are_in_it() {
+    let (status, out, err) = said(&["check", "--resolved"], UNREAD);
+    assert!(status == Some(0) && read(&out, &[]).is_ok(), "{out}");
+    assert!(err.contains("warning: `motion.max_speed`"), "{err}");
+    let (_, out, _) = said(&["check", "--predict", "--format", "json"], UNREAD);
+    let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let warning = &json[0]["warnings"][0];
+    assert_eq!(
+        (&warning["path"], &warning["line"]),
+        (&"motion.max_speed".into(), &6.into())
+    );
+    assert!(json[0]["predictions"].is_array() && warning["help"].is_string());
 }

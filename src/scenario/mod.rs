@@ -4,7 +4,7 @@
 //! line worked in, and answer a [`Scenario`] that holds, or a [`Report`] of everything that is wrong with it, each
 //! with its place. On the way from text to scenario: `token` and `tree` know what stands where, `overrides` and
 //! `source` work overrides into the text, `read` has serde make sense of it, `checks` finds what no field shows on its
-//! own, `explain` and `shape` say what would be right, `report` shows it.
+//! own, `warnings` what is allowed and hardly meant, `explain` and `shape` say what would be right, `report` shows it.
 
 mod checks;
 mod detector;
@@ -25,11 +25,12 @@ mod source;
 mod study;
 mod token;
 mod tree;
+mod warnings;
 
 pub use file::{contents, json_schema, load, question, to_ron};
 pub use overrides::Override;
-pub use read::parse;
-pub use report::{Diagnostic, Place, Report, Style};
+pub use read::{examine, parse};
+pub use report::{Diagnostic, Place, Report, Style, Warnings};
 pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,

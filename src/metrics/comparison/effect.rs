@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::contrasts::{Grid, Levels};
 use super::{Design, Trials, Verdict};
-use crate::metrics::statistics::{
-    Estimate, Part, Resamples, Tested, paired_permutation, ratio_of_sums, sign_permutation,
-};
+use crate::metrics::statistics::{Estimate, Part, Tested, mean, paired_permutation, ratio_of_sums, sign_permutation};
 
 /// A figure's mean over all settings in which a factor has one level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,7 +16,7 @@ pub struct LevelMean {
     pub factor: String,
     /// Label of the level.
     pub level: String,
-    /// The unweighted mean over the other factors' levels, with its bootstrap interval.
+    /// The unweighted mean over the other factors' levels, with its interval.
     pub mean: Estimate,
 }
 
@@ -33,7 +31,7 @@ pub struct Effect {
     pub level: String,
     /// Label of the level that it is held against.
     pub against: String,
-    /// The figure at the level less that at the other, mean over all levels of the other factors, with its bootstrap interval.
+    /// The figure at the level less that at the other, mean over all levels of the other factors, with its interval.
     pub difference: Estimate,
     /// The difference over the other level's mean.
     pub relative: Option<f64>,
@@ -60,7 +58,7 @@ pub struct Interaction {
     pub second: [String; 2],
     /// What the first factor's step does at the second factor's level, and at the level held against.
     pub steps: [Option<f64>; 2],
-    /// The former less the latter, a difference of differences, with its bootstrap interval; it is the largest of all, which its interval does
+    /// The former less the latter, a difference of differences, with its interval; it is the largest of all, which its interval does
     /// not allow for.
     pub difference: Estimate,
     /// Two-sided p-value of the permutation test of all differences of differences at once.
@@ -104,22 +102,12 @@ impl Parts {
         }
     }
 
-    /// The mean over `settings` of the ratio of sums over the `chosen` trials.
-    fn mean(&self, settings: &[usize], chosen: &[usize]) -> f64 {
+    /// The mean over `settings` of the ratio of sums.
+    fn mean(&self, settings: &[usize]) -> f64 {
         let ratios = settings
             .iter()
-            .map(|&setting| ratio_of_sums(chosen.iter().map(|&trial| self.settings[setting][trial])));
+            .map(|&setting| ratio_of_sums(self.settings[setting].iter().copied()));
         ratios.sum::<f64>() / settings.len() as f64
-    }
-
-    /// What `of` makes of the trials, with its interval.
-    fn estimate(&self, resamples: &Resamples, of: impl Fn(&[usize]) -> f64) -> Estimate {
-        let all: Vec<usize> = (0..self.trials).collect();
-        Estimate {
-            value: Some(of(&all)).filter(|value| value.is_finite()),
-            ci95: resamples.interval(|chosen| of(&chosen[0])),
-            n: self.trials as u64,
-        }
     }
 
     /// The mean over `settings` of what each trial adds to a ratio of sums, to first order: of plain values the value itself, else the ratio
@@ -138,10 +126,23 @@ impl Parts {
     }
 }
 
+/// The mean of what pairs of trials differ by, with its interval; nothing where one of them has no value.
+fn paired_difference(against: &[f64], at: &[f64]) -> Estimate {
+    let differences: Vec<f64> = against.iter().zip(at).map(|(against, at)| at - against).collect();
+    let n = differences.len() as u64;
+    if differences.iter().all(|difference| difference.is_finite()) {
+        mean(&differences)
+    } else {
+        Estimate {
+            n,
+            ..Estimate::default()
+        }
+    }
+}
+
 impl LevelMean {
     /// The means of a figure over every level of every factor that has several.
     pub(super) fn all(design: &Design, figure: usize, grid: &Grid, parts: &Parts) -> Vec<Self> {
-        let resamples = Resamples::of(&[parts.trials]);
         let mut means = Vec::new();
         for (place, factor) in design
             .factors
@@ -150,12 +151,13 @@ impl LevelMean {
             .filter(|(_, factor)| factor.levels.len() > 1)
         {
             for (level, label) in factor.levels.iter().enumerate() {
-                let settings = grid.with(&[(place, level)]);
+                let values = parts.by_trial(&grid.with(&[(place, level)]));
+                let known = values.iter().all(|value| value.is_finite());
                 means.push(Self {
                     figure: design.figures[figure].key.clone(),
                     factor: factor.name.clone(),
                     level: label.clone(),
-                    mean: parts.estimate(&resamples, |chosen| parts.mean(&settings, chosen)),
+                    mean: if known { mean(&values) } else { Estimate::default() },
                 });
             }
         }
@@ -173,12 +175,8 @@ impl Effect {
         tests: usize,
     ) -> (Self, Option<Tested>) {
         let [against, at] = [levels.against, levels.level].map(|level| grid.with(&[(levels.factor, level)]));
-        let resamples = Resamples::of(&[parts.trials]);
-        let difference = parts.estimate(&resamples, |chosen| {
-            parts.mean(&at, chosen) - parts.mean(&against, chosen)
-        });
-        let all: Vec<usize> = (0..parts.trials).collect();
-        let base = parts.mean(&against, &all);
+        let difference = paired_difference(&parts.by_trial(&against), &parts.by_trial(&at));
+        let base = parts.mean(&against);
         let strata: Vec<[&[Part]; 2]> = against
             .iter()
             .zip(&at)
@@ -218,17 +216,14 @@ impl Interaction {
         let sizes = [first, second].map(|factor| grid.levels(factor));
         let cell = |a: usize, b: usize| grid.with(&[(first, a), (second, b)]);
         let tested = sign_permutation(&residuals(sizes, |a, b| parts.by_trial(&cell(a, b))), tests);
-        let all: Vec<usize> = (0..parts.trials).collect();
-        let value = |a: usize, b: usize, chosen: &[usize]| parts.mean(&cell(a, b), chosen);
+        let value = |a: usize, b: usize| parts.mean(&cell(a, b));
         let base = design
             .reference
             .map(|reference| [first, second].map(|factor| grid.level_of(reference, factor)));
         let steps = steps(sizes, base);
-        let step = |&[[a0, a1], [b0, b1]]: &[[usize; 2]; 2], chosen: &[usize]| {
-            [b1, b0].map(|b| value(a1, b, chosen) - value(a0, b, chosen))
-        };
+        let step = |&[[a0, a1], [b0, b1]]: &[[usize; 2]; 2]| [b1, b0].map(|b| value(a1, b) - value(a0, b));
         let size = |place: &&[[usize; 2]; 2]| {
-            let [at, against] = step(place, &all);
+            let [at, against] = step(place);
             (at - against).abs()
         };
         let largest = steps
@@ -238,17 +233,21 @@ impl Interaction {
         let names = |factor: usize, [against, level]: [usize; 2]| {
             [level, against].map(|level| design.factors[factor].levels[level].clone())
         };
-        let resamples = Resamples::of(&[parts.trials]);
+        // (y₁₁ − y₀₁) − (y₁₀ − y₀₀): twice the mean over both settings with a plus less that over both with a minus.
+        let [[a0, a1], [b0, b1]] = place;
+        let side = |cells: [Vec<usize>; 2]| -> Vec<f64> {
+            let values = parts.by_trial(&cells.concat());
+            values.into_iter().map(|value| 2.0 * value).collect()
+        };
+        let plus = side([cell(a1, b1), cell(a0, b0)]);
+        let minus = side([cell(a0, b1), cell(a1, b0)]);
         let interaction = Self {
             figure: design.figures[figure].key.clone(),
             factors: [first, second].map(|factor| design.factors[factor].name.clone()),
             first: names(first, place[0]),
             second: names(second, place[1]),
-            steps: step(&place, &all).map(|step| Some(step).filter(|step| step.is_finite())),
-            difference: parts.estimate(&resamples, |chosen| {
-                let [at, against] = step(&place, chosen);
-                at - against
-            }),
+            steps: step(&place).map(|step| Some(step).filter(|step| step.is_finite())),
+            difference: paired_difference(&minus, &plus),
             p: tested.map(|tested| tested.p),
             p_adjusted: None,
             verdict: Dependence::NotComparable,

@@ -5,10 +5,9 @@ use crate::metrics::comparison::{Contrasts, Factor, SIGNIFICANT, TooFew};
 use crate::scenario::report::Diagnostic;
 
 impl Plan {
-    /// Says, before anything is run, if so few trials cannot show any of the differences that the study asks for, and how many could. Of trials
-    /// that are added as it runs, `most` are counted.
+    /// Says, before anything is run, if so few trials cannot show any of the differences that the study asks for, and how many could.
     #[must_use]
-    pub fn too_few_trials(&self, most: Option<u32>) -> Option<Diagnostic> {
+    pub fn too_few_trials(&self) -> Option<Diagnostic> {
         let factors: Vec<Factor> = self
             .factors
             .iter()
@@ -24,7 +23,7 @@ impl Plan {
             .all(|two| two[0].scenario.seed == two[1].scenario.seed);
         let tests = Contrasts::of(&factors, &settings, self.reference, paired).count() * self.figures.len();
         let trials = self.settings.iter().map(|setting| setting.scenario.trials);
-        let trials = trials.min().unwrap_or(0).max(most.unwrap_or(0));
+        let trials = trials.min().unwrap_or(0).max(self.most_trials.unwrap_or(0));
         let few = TooFew::of(tests, trials.into(), paired, SIGNIFICANT)?;
         let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
         let message = format!(
@@ -37,8 +36,15 @@ impl Plan {
         let fewer = match few.allowed {
             0 => String::new(),
             allowed => {
-                let reference = if self.reference.is_none() { "give a `reference` to hold the others against, or " } else { "" };
-                format!("; or ask for {} at most: {reference}leave out figures or levels", counted(allowed, "difference"))
+                let reference = if self.reference.is_none() {
+                    "give a `reference` to hold the others against, or "
+                } else {
+                    ""
+                };
+                format!(
+                    "; or ask for {} at most: {reference}leave out figures or levels",
+                    counted(allowed, "difference")
+                )
             }
         };
         Some(Diagnostic {
