@@ -101,7 +101,8 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
         [file] if is_study(&contents(file)?) => load_study(file)?,
         [file] => {
             return Err(Failure::Input(format!(
-                "error: {} holds no study\nGive a study file, `Study( ... )`, or two scenario files or more.",
+                "error: {0} is a scenario, and not a study: run it by `desim scenario {0}`\nGive a study file, `Study( ... )`, or two \
+                 scenario files or more.",
                 file.display()
             )));
         }
@@ -109,7 +110,7 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
             for file in files {
                 if is_study(&contents(file)?) {
                     return Err(Failure::Input(format!(
-                        "error: {} is a study, and not a scenario\nGive one study file alone, or scenario files.",
+                        "error: {0} is a study, and not a scenario: run it by `desim compare {0}`\nGive one study file alone, or scenario files.",
                         file.display()
                     )));
                 }
@@ -118,8 +119,12 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
         }
     };
     let plan = plan.with_figures(&arguments.figures)?;
-    Ok(match arguments.trials {
+    let plan = match arguments.trials {
         Some(trials) => plan.with_trials(trials),
+        None => plan,
+    };
+    Ok(match arguments.until_width {
+        Some(_) => plan.with_most_trials(arguments.most_trials),
         None => plan,
     })
 }

@@ -15,7 +15,7 @@ use super::shown::{Finished, Format};
 use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
 use crate::export::{self, Contents, Folder, Manifest, Pictures};
 use crate::metrics::Summary;
-use crate::scenario::{Scenario, contents, examine, question};
+use crate::scenario::{Scenario, contents, examine, is_study, question};
 use crate::simulation::{DriverKind, TrialError, run_trial};
 
 /// What `desim scenario --help` says.
@@ -113,6 +113,12 @@ impl From<Drawn> for Pictures {
 /// If the input is wrong, the run fails or is interrupted, or the results cannot be written.
 pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
     let text = contents(&arguments.file)?;
+    if is_study(&text) {
+        return Err(Failure::Input(format!(
+            "error: {0} is a study, and not a scenario: run it by `desim compare {0}`",
+            arguments.file.display()
+        )));
+    }
     let (scenario, warnings) = examine(
         &arguments.file.display().to_string(),
         &text,

@@ -31,6 +31,10 @@ pub struct Plan {
     pub relevant: f64,
     /// Keys of two figures in whose plane settings are drawn.
     pub pareto: Option<[String; 2]>,
+    /// Most trials that a setting may come to, if they are added as it runs.
+    pub most_trials: Option<u32>,
+    /// Where the number of trials stands, if it is a study's own.
+    pub trials_place: Option<Place>,
     /// What looks wrong with the study as a whole.
     pub warnings: Warnings,
 }
@@ -89,6 +93,8 @@ pub fn load_study(path: &Path) -> Result<Plan, Report> {
         reference: settings.iter().position(|setting| setting.levels == study.reference),
         relevant: study.relevant.get(),
         pareto: study.pareto.clone().map(|(x, y)| [x, y]),
+        most_trials: None,
+        trials_place: file.diagnose(Problem::new("trials", "", "")).place,
         warnings: Warnings::default(),
         settings,
     };
@@ -144,6 +150,8 @@ pub fn plan_of_files<P: AsRef<Path>>(files: &[P]) -> Result<Plan, Report> {
         reference: None,
         relevant: 0.05,
         pareto: None,
+        most_trials: None,
+        trials_place: None,
         warnings: Warnings::default(),
     };
     plan.figures = figures::usual(&plan);
@@ -200,7 +208,9 @@ impl Plan {
                 ..diagnostic
             }
         });
-        let mut diagnostics: Vec<Diagnostic> = self.warnings.diagnostics.iter().cloned().chain(said).collect();
+        let few = self.too_few_trials();
+        let whole = self.warnings.diagnostics.iter().cloned().chain(few);
+        let mut diagnostics: Vec<Diagnostic> = whole.chain(said).collect();
         let beyond = diagnostics.len().saturating_sub(limits::DIAGNOSTICS);
         diagnostics.truncate(limits::DIAGNOSTICS);
         let unplaced = self.settings.iter().map(|setting| setting.warnings.more);
@@ -210,12 +220,20 @@ impl Plan {
         }
     }
 
+    /// Adds trials until there are `most` of each setting, or enough.
+    #[must_use]
+    pub fn with_most_trials(mut self, most: u32) -> Self {
+        self.most_trials = Some(most);
+        self
+    }
+
     /// Runs so many trials of each setting instead.
     #[must_use]
     pub fn with_trials(mut self, trials: u32) -> Self {
         for setting in &mut self.settings {
             setting.scenario.trials = trials;
         }
+        self.trials_place = None;
         self
     }
 }
