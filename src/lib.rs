@@ -21,6 +21,7 @@
 //!
 //! use desim::engine::{ActorId, Span};
 //! use desim::geometry::{Pose, Vec2};
+//! use desim::protocol::control::PhaseConfig;
 //! use desim::protocol::heartbeat::{Heartbeat, Settings};
 //! use desim::quantity::Probability;
 //! use desim::radio::LossConfig;
@@ -31,8 +32,8 @@
 //!
 //! let places = [Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0)];
 //! let poses = places.map(|position| Pose { position, heading: 0.0 }).to_vec();
-//! let step = Span::from_secs(0.1);
-//! let settings = Settings::new(&Default::default(), &Default::default(), step, poses.len(), setup.streams());
+//! setup.control.phase = PhaseConfig::Together;
+//! let settings = Settings::new(&Default::default(), &Default::default(), &setup.control, poses.len(), setup.streams());
 //! let settings = Rc::new(settings);
 //! let robots: Vec<Heartbeat> = (0..2).map(|id| Heartbeat::new(ActorId(id), settings.clone())).collect();
 //!

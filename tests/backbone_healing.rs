@@ -35,7 +35,7 @@ fn run_on(file: &str, faults: &str, seconds: u32, trial: u32) -> TrialRecord {
     let end = BREAK_S + seconds;
     let overrides = [
         format!("time_limit={end}.0"),
-        format!("metrics=(hold: {}.0)", end - 1),
+        format!("protocol.completion=Held({}.0)", end - 1),
         format!("faults=[{faults}]"),
     ];
     run(file, &overrides, trial)
@@ -225,7 +225,7 @@ impl Harm {
 
 #[test]
 fn a_finished_backbone_keeps_its_chains_under_loss_suspects_nobody_falsely_and_stands_still() {
-    let overrides = ["time_limit=400.0".into(), "metrics=(hold: 380.0)".into()];
+    let overrides = ["time_limit=400.0".into(), "protocol.completion=Held(380.0)".into()];
     let record = run("hold30min.ron", &overrides, 0);
     let (finished, end) = (SimTime::from_secs(f64::from(BREAK_S)), SimTime::from_secs(400.0));
     let mut later = record.connectivity.iter().filter(|sample| sample.at >= finished);

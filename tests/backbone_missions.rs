@@ -89,7 +89,8 @@ fn two_links_run_side_by_side() {
 
 #[test]
 fn four_links_run_side_by_side_through_the_crowd_of_80_robots() {
-    let record = run("paper/completion_80x4.ron", &[], 0);
+    // Held, so that the chains have come to rest.
+    let record = run("paper/completion_80x4.ron", &["protocol.completion=Held(10.0)"], 0);
     assert_complete_and_connected(&record);
     assert_straight_and_even(&record);
 }
@@ -176,4 +177,30 @@ fn too_few_robots_for_all_targets_visit_one_after_another() {
     assert_eq!(visits.len(), 4, "visited {visits:?}");
     let links = &record.connectivity.last().expect("connectivity is sampled").links;
     assert!(links.contains(&2), "the last target has both links: {links:?}");
+}
+
+#[test]
+fn ten_robots_that_visit_four_targets_one_after_another_complete_where_each_is_to_be_visited_once_and_nowhere_else() {
+    let complete = |rule: &str| {
+        let rule = format!("protocol.completion={rule}");
+        run("paper/bandwidth_10.ron", &[&rule], 0)
+    };
+    let visited = complete("EachVisited");
+    let Outcome::Completed { step } = visited.outcome else {
+        panic!("{:?}", visited.outcome)
+    };
+    assert_eq!(visited.steps, step + 1, "it is not held");
+    assert_eq!(complete("Reached").outcome, Outcome::Censored);
+}
+
+#[test]
+fn a_mission_reached_is_one_held_for_no_time() {
+    let complete = |rule: &str| {
+        let rule = format!("protocol.completion={rule}");
+        run("paper/completion_20x1.ron", &[&rule], 3)
+    };
+    let [reached, at_once, held] = ["Reached", "Held(0.0)", "Held(2.5)"].map(complete);
+    assert_eq!((reached.outcome, reached.digest), (at_once.outcome, at_once.digest));
+    assert_eq!(held.outcome, reached.outcome, "the first step of the hold counts");
+    assert_eq!(held.steps, reached.steps + 25);
 }

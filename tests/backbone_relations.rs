@@ -110,6 +110,7 @@ fn watch(scenario: &Scenario, trial: u32) -> (Vec<Vec<Ties>>, TrialRecord) {
         time_limit: Span::from_secs(scenario.time_limit.get()),
         arena: scenario.arena.clone(),
         motion: scenario.motion.clone(),
+        control: scenario.control.clone(),
         radio: scenario.radio.clone(),
         faults: scenario.faults.clone(),
         ..Setup::default()
@@ -117,13 +118,12 @@ fn watch(scenario: &Scenario, trial: u32) -> (Vec<Vec<Ties>>, TrialRecord) {
     let body = scenario.motion.body_radius.get();
     let (swarm, arena) = (&scenario.swarm, &scenario.arena);
     let poses = deploy(&swarm.deploy, arena, swarm.robots, body, &setup.streams()).expect("room for all");
-    let period = Span::from_secs(scenario.control.period.get());
     let diary = Diary::new(RefCell::new(vec![Vec::new(); poses.len()]));
     let robots = backbone::swarm(
         config,
         &scenario.gossip,
         &scenario.detector,
-        period,
+        &scenario.control,
         &poses,
         setup.streams(),
     );

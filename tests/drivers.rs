@@ -45,7 +45,11 @@ fn robots_at_random_phases_are_the_same_run_under_both_drivers() {
 fn robots_woken_by_each_reception_are_the_same_run_under_both_drivers() {
     assert_same_under_both_drivers(&scenario(
         "loss20.ron",
-        &["time_limit=5.0", "metrics.hold=1.0", "control.wake=OnReception"],
+        &[
+            "time_limit=5.0",
+            "protocol.completion=Held(1.0)",
+            "control.wake=OnReception",
+        ],
     ));
 }
 
@@ -65,8 +69,11 @@ fn heartbeats_with_timers_between_control_steps_are_the_same_run_under_both_driv
 
 #[test]
 fn another_seed_or_another_trial_is_another_run() {
-    let base = scenario("loss20.ron", &["time_limit=5.0", "metrics.hold=1.0"]);
-    let other = scenario("loss20.ron", &["time_limit=5.0", "metrics.hold=1.0", "seed=2"]);
+    let base = scenario("loss20.ron", &["time_limit=5.0", "protocol.completion=Held(1.0)"]);
+    let other = scenario(
+        "loss20.ron",
+        &["time_limit=5.0", "protocol.completion=Held(1.0)", "seed=2"],
+    );
     let digest = run(&base, 0, DriverKind::Inline).digest;
     assert_ne!(digest, run(&other, 0, DriverKind::Inline).digest);
     assert_ne!(digest, run(&base, 1, DriverKind::Inline).digest);

@@ -4,8 +4,10 @@ use std::path::Path;
 
 use desim::engine::{ActorId, SimTime};
 use desim::metrics::{FaultKind, TrialRecord};
+use desim::protocol::CompletionConfig;
+use desim::quantity::{NonNegative, Positive};
 use desim::radio::LossCause;
-use desim::scenario::{Scenario, load, parse};
+use desim::scenario::{ProtocolConfig, Scenario, load, parse};
 use desim::simulation::{DriverKind, run_trial};
 use proptest::prelude::*;
 use tokio_util::sync::CancellationToken;
@@ -86,7 +88,10 @@ fn a_run_with_every_kind_of_fault_is_the_same_under_both_drivers() {
     scenario = parse(
         "test.ron",
         &desim::scenario::to_ron(&scenario).replace("wake: ControlStep", &format!("wake: {woken}")),
-        &["time_limit=8.0".parse().unwrap(), "metrics.hold=1.0".parse().unwrap()],
+        &[
+            "time_limit=8.0".parse().unwrap(),
+            "protocol.completion=Held(1.0)".parse().unwrap(),
+        ],
     )
     .unwrap();
     assert_eq!(
@@ -250,8 +255,11 @@ fn the_shipped_examples_of_faults_run_and_something_fails() {
     let examples = shipped::files().into_iter().filter(|file| file.starts_with(&folder));
     let mut seen = 0;
     for file in examples {
-        let sets = ["time_limit=390.0", "metrics.hold=385.0"].map(|set| set.parse().expect("a valid override"));
-        let scenario = load(&file, &sets).unwrap_or_else(|report| panic!("{report}"));
+        let mut scenario = load(&file, &[]).unwrap_or_else(|report| panic!("{report}"));
+        scenario.time_limit = Positive::new(390.0);
+        if let ProtocolConfig::Backbone(backbone) = &mut scenario.protocol {
+            backbone.completion = Some(CompletionConfig::Held(NonNegative::new(385.0)));
+        }
         // Radiation spares a trial once in a while, and three in a row once in a hundred times.
         let something_fails = |trial| !run_with(&scenario, DriverKind::Inline, trial).faults.is_empty();
         assert!((0..3).any(something_fails), "nothing failed in {}", file.display());

@@ -125,7 +125,7 @@ fn one_trial_disagrees_with_nothing_for_it_has_no_interval() {
 fn checked(files: &[&str], say: Say) -> String {
     let files: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
     let mut out = Vec::new();
-    assert!(check(&files, &[], say, &mut out).unwrap());
+    assert!(check(&files, &[], say, None, &mut out).unwrap());
     String::from_utf8(out).unwrap()
 }
 
@@ -148,7 +148,7 @@ fn what_is_expected_of_every_shipped_scenario_fits_on_a_terminal() {
         .collect();
     assert!(files.len() > 10);
     let mut out = Vec::new();
-    assert!(check(&files, &[], Say::Expected, &mut out).unwrap());
+    assert!(check(&files, &[], Say::Expected, None, &mut out).unwrap());
     let text = String::from_utf8(out).unwrap();
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use desim::cli::check::{Say, check};
+use desim::protocol::CompletionConfig;
 use desim::protocol::backbone::TargetsConfig;
 use desim::radio::{LatencyConfig, LossConfig};
 use desim::scenario::{Override, ProtocolConfig, Report, Scenario, json_schema, load, parse, question, to_ron};
@@ -314,6 +315,31 @@ fn the_mistake_of_another_kind_of_value() {
 }
 
 #[test]
+fn a_hold_said_in_the_metrics_is_the_protocols_completion() {
+    let completion = |sets: &[&str]| with(sets).completion();
+    let held = |seconds| CompletionConfig::Held(desim::quantity::NonNegative::new(seconds));
+    assert_eq!(completion(&[]), held(10.0));
+    assert_eq!(completion(&["metrics.hold=2.5"]), held(2.5));
+    assert_eq!(completion(&["protocol.completion=Held(4)"]), held(4.0));
+    assert_eq!(
+        completion(&["protocol.completion=EachVisited"]),
+        CompletionConfig::EachVisited
+    );
+    let older = with(&["metrics.hold=2.5"]);
+    assert_eq!(
+        older,
+        with(&["protocol.completion=Held(2.5)"]),
+        "said one way, and another"
+    );
+    assert!(to_ron(&older).contains("completion: Held(2.5)"));
+}
+
+#[test]
+fn the_mistake_of_two_ways_to_say_when_a_mission_is_complete() {
+    insta::assert_snapshot!(refused(&["metrics.hold=1.0", "protocol.completion=Reached"]));
+}
+
+#[test]
 fn the_mistake_of_a_mission_that_cannot_complete() {
     insta::assert_snapshot!(shown("time_limit: 60.0", "time_limit: 6.0"));
 }
@@ -372,7 +398,7 @@ fn checked(files: &[PathBuf], overrides: &[&str], resolved: bool) -> (bool, Stri
     let overrides: Vec<_> = overrides.iter().map(|text| (*text).to_owned()).collect();
     let mut out = Vec::new();
     let say = if resolved { Say::Resolved } else { Say::Well };
-    let well = check(files, &overrides, say, &mut out).unwrap();
+    let well = check(files, &overrides, say, None, &mut out).unwrap();
     (well, String::from_utf8(out).unwrap())
 }
 
@@ -427,4 +453,76 @@ fn the_schema_is_printed_as_json() {
     desim::cli::schema::schema(false, &mut out).unwrap();
     let printed: serde_json::Value = serde_json::from_slice(&out).unwrap();
     assert_eq!(&printed, json_schema().as_value());
+}
+
+/// What the command says of `BASE` with these lines in place of its mission, and its exit status.
+fn said(command: &[&str], sections: &str) -> (Option<i32>, String, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("base.ron");
+    let mission = "protocol: Backbone(targets: Ring(count: 4, radius: 4.5, links: 2)),";
+    fs::write(&file, BASE.replace(mission, sections)).unwrap();
+    let mut desim = assert_cmd::Command::cargo_bin("desim").unwrap();
+    let output = desim
+        .args(command)
+        .arg(&file)
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let left = fs::read_dir(folder.path()).unwrap().count();
+    assert!(
+        output.status.code() != Some(2) || left == 1,
+        "something was left behind"
+    );
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+const UNREAD: &str = "protocol: Heartbeat, motion: (max_speed: 0.05),";
+
+#[test]
+fn a_warning_is_printed_with_place_and_remedy_and_leaves_the_exit_status_0() {
+    let (status, out, _) = said(&["check"], UNREAD);
+    assert_eq!(status, Some(0));
+    for part in [
+        "warning: `motion.max_speed` is set",
+        "base.ron:6:",
+        "leave `motion.max_speed` out",
+        "ok ",
+    ] {
+        assert!(out.contains(part), "{part}: {out}");
+    }
+    let (status, out, err) = said(&["scenario", "--quiet", "--set", "time_limit=2"], UNREAD);
+    assert_eq!((status, out.as_str()), (Some(0), ""));
+    assert!(
+        err.contains("warning: `motion.max_speed`") && err.contains("base.ron:6:"),
+        "{err}"
+    );
+}
+
+#[test]
+fn warnings_that_are_denied_end_in_exit_status_2_and_nothing_is_written() {
+    for command in ["check", "scenario"] {
+        let (status, out, err) = said(&[command, "--deny", "warnings"], UNREAD);
+        let all = format!("{out}{err}");
+        assert_eq!(status, Some(2), "{all}");
+        assert!(
+            all.contains("error: 1 warning, and warnings are denied") && !all.contains("ok "),
+            "{all}"
+        );
+    }
+}
+
+#[test]
+fn warnings_of_a_resolved_scenario_stay_out_of_its_text_and_those_of_json_are_in_it() {
+    let (status, out, err) = said(&["check", "--resolved"], UNREAD);
+    assert!(status == Some(0) && read(&out, &[]).is_ok(), "{out}");
+    assert!(err.contains("warning: `motion.max_speed`"), "{err}");
+    let (_, out, _) = said(&["check", "--predict", "--format", "json"], UNREAD);
+    let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let warning = &json[0]["warnings"][0];
+    assert_eq!(
+        (&warning["path"], &warning["line"]),
+        (&"motion.max_speed".into(), &6.into())
+    );
+    assert!(json[0]["predictions"].is_array() && warning["help"].is_string());
 }

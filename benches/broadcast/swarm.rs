@@ -21,12 +21,11 @@ use crate::workload::{
 
 pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
     let setup = setup(workload);
-    let period = Span::from_secs(PERIOD_S);
     let detector = DetectorConfig::Timeout(Positive::new(TIMEOUT_S));
     let settings = Rc::new(Settings::new(
         &GossipConfig::default(),
         &detector,
-        period,
+        &setup.control,
         workload.poses.len(),
         Streams::new(SEED, 0),
     ));

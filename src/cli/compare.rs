@@ -7,6 +7,7 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use serde_json::json;
 
+use super::check::{self, Deny};
 use super::failure::Failure;
 use super::settings::Settings;
 use super::shown::{Format, print_comparison};
@@ -57,6 +58,9 @@ pub struct CompareArguments {
     /// Show no progress and, with `--format text`, no report
     #[arg(long)]
     pub quiet: bool,
+    /// Refuse what `desim check` warns of, for scripts: nothing is run or written
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub deny: Option<Deny>,
     /// Delete the results that are in the folder, and run again
     #[arg(long)]
     pub force: bool,
@@ -76,6 +80,7 @@ fn width(text: &str) -> Result<f64, String> {
 /// If the input is wrong, a run fails or is interrupted, or the results cannot be written.
 pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     let plan = plan(arguments)?;
+    check::heed(&plan.all_warnings(), arguments.deny)?;
     let default_out = || PathBuf::from("results").join(&plan.name);
     let folder = StudyFolder::new(arguments.out.clone().unwrap_or_else(default_out));
     let names = plan.settings.iter().map(|setting| setting.name.clone()).collect();
@@ -96,7 +101,8 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
         [file] if is_study(&contents(file)?) => load_study(file)?,
         [file] => {
             return Err(Failure::Input(format!(
-                "error: {} holds no study\nGive a study file, `Study( ... )`, or two scenario files or more.",
+                "error: {0} is a scenario, and not a study: run it by `desim scenario {0}`\nGive a study file, `Study( ... )`, or two \
+                 scenario files or more.",
                 file.display()
             )));
         }
@@ -104,7 +110,7 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
             for file in files {
                 if is_study(&contents(file)?) {
                     return Err(Failure::Input(format!(
-                        "error: {} is a study, and not a scenario\nGive one study file alone, or scenario files.",
+                        "error: {0} is a study, and not a scenario: run it by `desim compare {0}`\nGive one study file alone, or scenario files.",
                         file.display()
                     )));
                 }
@@ -113,8 +119,12 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
         }
     };
     let plan = plan.with_figures(&arguments.figures)?;
-    Ok(match arguments.trials {
+    let plan = match arguments.trials {
         Some(trials) => plan.with_trials(trials),
+        None => plan,
+    };
+    Ok(match arguments.until_width {
+        Some(_) => plan.with_most_trials(arguments.most_trials),
         None => plan,
     })
 }

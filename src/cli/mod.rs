@@ -19,7 +19,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use check::Say;
+use check::{Deny, Say};
 use compare::CompareArguments;
 use explain::ExplainArguments;
 pub use failure::Failure;
@@ -67,6 +67,7 @@ pub enum Command {
     /// Say everything that is wrong with scenario and study files, without running them
     ///
     /// Of a study, every combination is checked. Each fault comes with its file, line and column, and with what would be right. Exit status 2 if there is any.
+    /// What is allowed and hardly meant, such as a failure after the end, is warned of in the same way, and leaves the exit status 0.
     Check {
         /// Scenario files and study files (RON)
         #[arg(required = true, value_name = "FILE")]
@@ -84,6 +85,9 @@ pub enum Command {
         /// How to print what is expected: as tables, or as one JSON list with an entry a file
         #[arg(long, value_enum, default_value_t, requires = "predict")]
         format: Format,
+        /// Refuse what is warned of, for scripts
+        #[arg(long, value_enum, value_name = "WHAT")]
+        deny: Option<Deny>,
     },
     /// Report finished results again: on the terminal, and as a page of charts
     #[command(long_about = report::LONG_ABOUT)]
@@ -114,6 +118,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
             resolved,
             predict,
             format,
+            deny,
         } => {
             let say = match (resolved, predict, format) {
                 (true, ..) => Say::Resolved,
@@ -121,7 +126,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
                 (_, true, Format::Json) => Say::ExpectedJson,
                 (false, false, _) => Say::Well,
             };
-            let well = check::check(&files, &overrides, say, &mut out)?;
+            let well = check::check(&files, &overrides, say, deny, &mut out)?;
             if well { Ok(()) } else { Err(Failure::Shown) }
         }
         Command::Report(arguments) => report::run(&arguments),

@@ -7,7 +7,7 @@ use std::thread;
 use clap::{Args, ValueEnum};
 use tokio_util::sync::CancellationToken;
 
-use super::check;
+use super::check::{self, Deny};
 use super::failure::Failure;
 use super::interrupt;
 use super::progress::Progress;
@@ -15,7 +15,7 @@ use super::shown::{Finished, Format};
 use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
 use crate::export::{self, Contents, Folder, Manifest, Pictures};
 use crate::metrics::Summary;
-use crate::scenario::{Scenario, contents, parse, question};
+use crate::scenario::{Scenario, contents, examine, is_study, question};
 use crate::simulation::{DriverKind, TrialError, run_trial};
 
 /// What `desim scenario --help` says.
@@ -58,6 +58,9 @@ pub struct ScenarioArguments {
     /// Show no progress and, with `--format text`, no report
     #[arg(long)]
     pub quiet: bool,
+    /// Refuse what `desim check` warns of, for scripts: nothing is run or written
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub deny: Option<Deny>,
     /// Delete the results that are in the folder, and run again
     #[arg(long)]
     pub force: bool,
@@ -110,11 +113,18 @@ impl From<Drawn> for Pictures {
 /// If the input is wrong, the run fails or is interrupted, or the results cannot be written.
 pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
     let text = contents(&arguments.file)?;
-    let scenario = parse(
+    if is_study(&text) {
+        return Err(Failure::Input(format!(
+            "error: {0} is a study, and not a scenario: run it by `desim compare {0}`",
+            arguments.file.display()
+        )));
+    }
+    let (scenario, warnings) = examine(
         &arguments.file.display().to_string(),
         &text,
         &check::all(&arguments.settings())?,
     )?;
+    check::heed(&warnings, arguments.deny)?;
     let default_out = || PathBuf::from("results").join(&scenario.name);
     let folder = Folder::new(arguments.out.clone().unwrap_or_else(default_out));
     let (summary, manifest) = match finished(&folder, &scenario, arguments.force)? {

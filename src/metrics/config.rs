@@ -13,8 +13,10 @@ pub struct MetricsConfig {
     pub sample_interval: NonNegative,
     /// Samples from one entry of the traffic's series to the next; 0 for no series.
     pub series_every: u32,
-    /// How long every target must be held with its links before the mission counts as complete, in seconds; the run then ends.
-    pub hold: NonNegative,
+    /// The older way to say `completion: Held(seconds)`, which belongs to the protocol.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "NonNegative")]
+    pub hold: Option<NonNegative>,
 }
 
 impl Default for MetricsConfig {
@@ -22,7 +24,7 @@ impl Default for MetricsConfig {
         Self {
             sample_interval: NonNegative::new(1.0),
             series_every: 1,
-            hold: NonNegative::new(10.0),
+            hold: None,
         }
     }
 }

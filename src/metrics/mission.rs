@@ -1,6 +1,8 @@
-//! When a mission is complete: every target held by a worker with its links, for long enough.
+//! What a swarm is asked to do, and whether it does it at an instant: every target held by a worker with its links.
 
-use crate::engine::{ActorId, Span};
+use std::cell::OnceCell;
+
+use crate::engine::ActorId;
 use crate::geometry::Vec2;
 use crate::protocol::Role;
 
@@ -30,23 +32,6 @@ pub struct MissionTarget {
     pub position: Vec2,
     /// Nt_i, the vertex-disjoint chains that it needs, at least 1.
     pub links: u32,
-}
-
-/// How far a mission has come at a control step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
-    /// Some target is not held with its links, or there is no mission.
-    Underway,
-    /// All are, without a break since step `since`, but not yet for long enough.
-    Holding {
-        /// The first control step of the hold.
-        since: u64,
-    },
-    /// All were held for as long as the scenario asks: the run may end.
-    Complete {
-        /// The first control step of the hold: the steps to completion.
-        since: u64,
-    },
 }
 
 /// What the mission is judged by at one instant.
@@ -112,33 +97,34 @@ impl Mission {
         distances.fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether every target is held with its links. The flow through the parent relation is computed only when
-    /// everything that is cheaper to see holds.
+    /// Whether every target is held with its links, which is never so of no target. The flow through the parent relation is
+    /// computed only when everything that is cheaper to see holds.
     pub(super) fn is_accomplished(&self, scene: Scene) -> bool {
-        let holders: Vec<Vec<ActorId>> = (0..self.targets.len())
-            .map(|target| self.holders(target, scene))
-            .collect();
-        if holders.iter().any(Vec::is_empty) {
-            return false;
-        }
-        let chains = scene.chains(self.root);
-        let mut wanted = self.targets.iter().map(|target| target.links);
-        holders.iter().all(|robots| {
-            wanted
-                .next()
-                .is_some_and(|links| robots.iter().any(|&robot| chains.count(robot) >= links))
-        })
+        let targets = 0..self.targets.len();
+        let chains = OnceCell::new();
+        !self.targets.is_empty()
+            && targets
+                .clone()
+                .all(|target| self.holders(target, scene).next().is_some())
+            && targets.clone().all(|target| self.is_served(target, scene, &chains))
+    }
+
+    /// Whether a worker holds target number `target` with all its links. The `chains` of this instant are computed when they are first
+    /// needed.
+    pub(super) fn is_served(&self, target: usize, scene: Scene, chains: &OnceCell<Chains>) -> bool {
+        let links = self.targets[target].links;
+        let chains = || chains.get_or_init(|| scene.chains(self.root));
+        self.holders(target, scene).any(|robot| chains().count(robot) >= links)
     }
 
     /// The workers of target number `target` that are at it and have enough parents near.
-    fn holders(&self, target: usize, scene: Scene) -> Vec<ActorId> {
+    fn holders<'a>(&'a self, target: usize, scene: Scene<'a>) -> impl Iterator<Item = ActorId> + 'a {
         let MissionTarget { position, links } = self.targets[target];
         scene
             .reports
             .working_for(target, self.worker_role)
-            .filter(|robot| (scene.positions[robot.index()] - position).norm() <= self.reach)
-            .filter(|&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
-            .collect()
+            .filter(move |robot| (scene.positions[robot.index()] - position).norm() <= self.reach)
+            .filter(move |&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
     }
 
     /// Distinct live parents of `robot`, live itself, within d_c of it.
@@ -154,95 +140,24 @@ impl Mission {
     }
 }
 
-/// Follows a mission from control step to control step.
-#[derive(Debug)]
-pub(super) struct Judge {
-    pub(super) mission: Mission,
-    hold: Hold,
-}
-
-impl Judge {
-    /// A judge that asks for `mission` to be held as `hold` says.
-    pub(super) fn new(mission: Mission, hold: Hold) -> Self {
-        Self { mission, hold }
-    }
-
-    /// Judges control step number `step`; steps are judged in order. A mission that is complete stays so.
-    pub(super) fn observe(&mut self, step: u64, scene: Scene) -> Progress {
-        self.hold.observe(step, || self.mission.is_accomplished(scene))
-    }
-
-    /// The step that completed the mission, if one did.
-    pub(super) fn completed_at(&self) -> Option<u64> {
-        self.hold.completed_at()
-    }
-}
-
-/// Asks for something to hold without a break for some time.
-#[derive(Clone, Debug)]
-pub(super) struct Hold {
-    duration: Span,
-    control_period: Span,
-    progress: Progress,
-}
-
-impl Hold {
-    /// Something is to be held for `duration`, judged every `control_period`.
-    pub(super) fn new(duration: Span, control_period: Span) -> Self {
-        Self {
-            duration,
-            control_period,
-            progress: Progress::Underway,
-        }
-    }
-
-    /// Judges control step number `step`; steps are judged in order. What is complete stays so.
-    pub(super) fn observe(&mut self, step: u64, holds: impl FnOnce() -> bool) -> Progress {
-        self.progress = match self.progress {
-            complete @ Progress::Complete { .. } => complete,
-            _ if !holds() => Progress::Underway,
-            Progress::Underway => self.held_since(step, step),
-            Progress::Holding { since } => self.held_since(since, step),
-        };
-        self.progress
-    }
-
-    fn held_since(&self, since: u64, step: u64) -> Progress {
-        if self.control_period * (step - since) >= self.duration {
-            Progress::Complete { since }
-        } else {
-            Progress::Holding { since }
-        }
-    }
-
-    /// The step that completed it, if one did.
-    pub(super) fn completed_at(&self) -> Option<u64> {
-        match self.progress {
-            Progress::Complete { since } => Some(since),
-            Progress::Underway | Progress::Holding { .. } => None,
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::engine::SimTime;
     use crate::faults::{Change, Effect, Health, Subject};
     use crate::protocol::Note;
 
     const WORKER: Role = Role(1);
-    const STEP: Span = Span::from_nanos(100_000_000);
 
     /// One target two hops out on the x axis: robot 0 is the root, 3 the worker, 1 and 2 relay side by side.
-    struct Stage {
-        reports: Reports,
-        failures: Failures,
-        positions: Vec<Vec2>,
+    pub struct Stage {
+        pub reports: Reports,
+        pub failures: Failures,
+        pub positions: Vec<Vec2>,
     }
 
     impl Stage {
-        fn new() -> Self {
+        pub fn new() -> Self {
             let mut reports = Reports::new(4);
             let relies_on = |ids: &[u32]| Note::Parents(ids.iter().copied().map(ActorId).collect());
             for (robot, note) in [
@@ -265,7 +180,7 @@ mod tests {
             }
         }
 
-        fn silence(&mut self, robot: u32) {
+        pub fn silence(&mut self, robot: u32) {
             let silence = Subject::Robot {
                 robot: ActorId(robot),
                 effect: Effect::Silence,
@@ -283,7 +198,7 @@ mod tests {
             self.failures.change(SimTime::ZERO, &change, &self.reports);
         }
 
-        fn scene(&self) -> Scene<'_> {
+        pub fn scene(&self) -> Scene<'_> {
             Scene::new(&self.reports, &self.failures, &self.positions, 2.0)
         }
 
@@ -292,7 +207,7 @@ mod tests {
         }
     }
 
-    fn mission(links: u32) -> Mission {
+    pub fn mission(links: u32) -> Mission {
         Mission {
             targets: vec![MissionTarget {
                 position: Vec2::new(3.2, 0.0),
@@ -344,37 +259,20 @@ mod tests {
     }
 
     #[test]
+    fn a_mission_without_targets_is_never_accomplished() {
+        let aimless = Mission {
+            targets: Vec::new(),
+            ..mission(1)
+        };
+        assert!(!Stage::new().accomplishes(&aimless));
+    }
+
+    #[test]
     fn a_parent_named_twice_is_one_link() {
         let mut stage = Stage::new();
         stage
             .reports
             .note(ActorId(3), &Note::Parents(vec![ActorId(1), ActorId(1)]));
         assert!(!stage.accomplishes(&mission(2)) && stage.accomplishes(&mission(1)));
-    }
-
-    #[test]
-    fn the_first_step_of_an_unbroken_hold_is_the_completion() {
-        let mut judge = Judge::new(mission(2), Hold::new(STEP * 3, STEP));
-        let (held, mut broken) = (Stage::new(), Stage::new());
-        broken.positions[3].x = 0.0;
-        let scenes = [&broken, &held, &held, &broken, &held, &held, &held, &held];
-        let seen: Vec<_> = (0..)
-            .zip(scenes)
-            .map(|(step, stage)| judge.observe(step, stage.scene()))
-            .collect();
-        assert_eq!(seen[2], Progress::Holding { since: 1 });
-        assert_eq!(seen[3], Progress::Underway);
-        assert_eq!(seen[6], Progress::Holding { since: 4 });
-        assert_eq!(seen[7], Progress::Complete { since: 4 });
-        assert_eq!(judge.observe(8, broken.scene()), Progress::Complete { since: 4 });
-        assert_eq!(judge.completed_at(), Some(4));
-    }
-
-    #[test]
-    fn without_a_hold_the_first_step_completes() {
-        assert_eq!(
-            Judge::new(mission(2), Hold::new(Span::ZERO, STEP)).observe(7, Stage::new().scene()),
-            Progress::Complete { since: 7 }
-        );
     }
 }

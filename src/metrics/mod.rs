@@ -1,6 +1,7 @@
 //! What a run leaves behind: traffic, fates, connectivity, outcome, and the statistics over trials.
 
 pub mod comparison;
+mod completion;
 mod config;
 mod connectivity;
 pub mod detection;
@@ -18,10 +19,11 @@ pub mod statistics;
 pub mod summary;
 mod traffic;
 
+pub use completion::Progress;
 pub use config::MetricsConfig;
 pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
-pub use mission::{Mission, MissionTarget, Progress};
+pub use mission::{Mission, MissionTarget};
 pub use record::{
     ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotBytes, RobotState, SeriesEntry,
     TopicFates, TrafficRow, TrialRecord, Volume,

@@ -4,16 +4,17 @@ use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::{Change, Subject};
 use crate::geometry::{Pose, Vec2};
 use crate::motion::World;
-use crate::protocol::{MessageSize, Note, Topic};
+use crate::protocol::{CompletionConfig, MessageSize, Note, Topic};
 use crate::radio::LossCause;
 
+use super::completion::{Hearing, Judge, Progress};
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
 use super::detection::{CopyFate, Inbox, Scorer, StatusTrace, Watching};
 use super::faults::Failures;
 use super::healing::Healing;
 use super::latency::LatencyHistogram;
-use super::mission::{Hold, Judge, Mission, Progress, Scene};
+use super::mission::{Mission, Scene};
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
 use super::reports::Reports;
 use super::series::Series;
@@ -39,6 +40,8 @@ pub struct Layout {
     pub mission: Option<Mission>,
     /// How many rumours there are that all robots are to know; 0 for none.
     pub rumors: usize,
+    /// When the mission, or the spread of the rumours, is complete.
+    pub completion: CompletionConfig,
     /// How far back a suspicion is traced to the statuses that were missed.
     pub status_memory: Span,
     /// How long the robots' failure detector waits for a status before it suspects.
@@ -85,7 +88,7 @@ pub struct Recorder {
     judge: Option<Judge>,
     spread: Spread,
     /// How far the rumours have come, if there are any.
-    everyone_knows: Option<Hold>,
+    everyone_knows: Option<Hearing>,
     connectivity: Vec<ConnectivitySample>,
     series: Series,
     trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
@@ -97,7 +100,12 @@ impl Recorder {
     /// A recorder for a run of this shape, before its start.
     #[must_use]
     pub fn new(layout: Layout, config: &MetricsConfig) -> Self {
-        let hold = Hold::new(Span::from_secs(config.hold.get()), layout.control_period);
+        let Layout {
+            rumors,
+            completion,
+            control_period,
+            ..
+        } = layout;
         Self {
             roles: layout.roles,
             radio_range: layout.radio_range,
@@ -118,9 +126,11 @@ impl Recorder {
                 },
             ),
             trace: layout.trace.map(StatusTrace::new),
-            judge: layout.mission.map(|mission| Judge::new(mission, hold.clone())),
+            judge: layout
+                .mission
+                .map(|mission| Judge::new(mission, completion, control_period)),
             spread: Spread::new(layout.rumors, layout.robots),
-            everyone_knows: (layout.rumors > 0).then_some(hold),
+            everyone_knows: (rumors > 0).then(|| Hearing::new(rumors, completion, control_period)),
             connectivity: Vec::new(),
             series: Series::new(config.series_every),
             trajectories: Vec::new(),
@@ -294,7 +304,7 @@ impl Recorder {
     /// in `positions`.
     pub fn observe(&mut self, step: u64, positions: &[Vec2]) -> Progress {
         if let Some(everyone_knows) = &mut self.everyone_knows {
-            return everyone_knows.observe(step, || self.spread.is_complete(&self.failures));
+            return everyone_knows.observe(step, &self.spread, &self.failures);
         }
         let Some(judge) = &mut self.judge else {
             return Progress::Underway;
@@ -404,6 +414,7 @@ mod tests {
             control_period: Span::from_secs(0.1),
             mission,
             rumors: 0,
+            completion: CompletionConfig::default(),
             status_memory: Span::from_secs(8.0),
             patience: Span::from_secs(4.0),
             trace: None,

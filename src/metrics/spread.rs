@@ -37,10 +37,16 @@ impl Spread {
         spread.informed[robot.index()].get_or_insert(at);
     }
 
-    /// Whether every live robot knows every rumour.
+    /// Whether every live robot knows every rumour, and there is one.
     pub(super) fn is_complete(&self, failures: &Failures) -> bool {
-        let knows = |(robot, at): (u32, &Option<SimTime>)| at.is_some() || !failures.is_live(ActorId(robot));
-        self.0.iter().all(|rumor| (0..).zip(&rumor.informed).all(knows))
+        (0..self.0.len()).all(|rumor| self.is_known(rumor, failures))
+    }
+
+    /// Whether every live robot knows rumour number `rumor`, and there is one.
+    pub(super) fn is_known(&self, rumor: usize, failures: &Failures) -> bool {
+        let informed = (0..).map(ActorId).zip(&self.0[rumor].informed);
+        let mut live = informed.filter(|(robot, _)| failures.is_live(*robot)).peekable();
+        live.peek().is_some() && live.all(|(_, at)| at.is_some())
     }
 
     pub(super) fn into_records(self) -> Vec<RumorSpread> {

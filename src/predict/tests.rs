@@ -27,7 +27,7 @@ fn assert_value(preflight: &Preflight, name: &str, expected: f64) {
 
 /// Three robots in a row, 1 m apart, hear their neighbours at most: 4/3 a robot.
 const ROW: &str = "swarm: (robots: 3, deploy: At([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)])), protocol: Heartbeat,
-    control: (period: 0.5), gossip: (status: (interval: 1.0)), detector: Timeout(3.5)";
+    control: (period: 0.5, phase: Together), gossip: (status: (interval: 1.0)), detector: Timeout(3.5)";
 
 #[test]
 fn robots_that_stand_still_are_predicted_throughout_by_the_published_forms() {
@@ -105,7 +105,7 @@ fn timeouts_and_nfd_s_are_predicted_as_their_own_closed_forms_have_it() {
     for detector in ["Timeout(3.5)", "Timeout(3.0)", "NfdS(shift: 2.5)", "NfdS(shift: 3.0)"] {
         let radio = "radio: (loss: GilbertElliott(good_to_bad: 0.05, bad_to_good: 0.2), latency: Constant(0.05))";
         let text = format!("{}, {radio}", ROW.replace("Timeout(3.5)", detector));
-        let text = text.replace("control: (period: 0.5)", "control: (period: 0.5, wake: OnReception)");
+        let text = text.replace("phase: Together", "wake: OnReception");
         let expected = preflight(&text);
         let quality = scenario(&text).detector.quality(&link).unwrap();
         assert_value(&expected, "mistake_recurrence_s", quality.mistake_recurrence_s);

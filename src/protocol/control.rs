@@ -1,9 +1,13 @@
-//! When robots wake.
+//! When robots wake, and where what they repeat begins.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::engine::{ActorId, KeyedStreams, Purpose, Span, Streams};
 use crate::quantity::Positive;
+
+/// Where a rhythm begins, by robot and rhythm: one word.
+const PHASE: Purpose = Purpose::new("control.phase");
 
 /// When robots wake.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -11,7 +15,7 @@ use crate::quantity::Positive;
 pub struct ControlConfig {
     /// Seconds between the control steps of a robot (paper table 1: dt = 0.1 s).
     pub period: Positive,
-    /// How the robots' control steps lie against each other.
+    /// How what robots repeat lies against each other's: their control steps, and whatever has an interval of its own.
     pub phase: PhaseConfig,
     /// What wakes a robot beside its control step and its timers.
     pub wake: WakeConfig,
@@ -21,18 +25,29 @@ impl Default for ControlConfig {
     fn default() -> Self {
         Self {
             period: Positive::new(0.1),
-            phase: PhaseConfig::Together,
+            phase: PhaseConfig::Random,
             wake: WakeConfig::ControlStep,
         }
     }
 }
 
-/// How the robots' control steps lie against each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+impl ControlConfig {
+    /// From one control step of a robot to its next.
+    #[must_use]
+    pub fn period(&self) -> Span {
+        Span::from_secs(self.period.get())
+    }
+}
+
+/// How what robots repeat lies against each other's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum PhaseConfig {
-    /// All at once (the paper's simulator).
+    /// All robots at once (the paper's simulator): every rhythm begins at the start of the trial. No radio on which frames take
+    /// time would bear it.
     Together,
-    /// Each robot at its own random phase, drawn once a trial.
+    /// Each robot on its own: every rhythm begins at a random phase of its own interval, drawn once a robot and trial. So
+    /// whatever happens at a fixed time falls anywhere between two statuses, two probes or two rounds.
+    #[default]
     Random,
 }
 
@@ -43,4 +58,59 @@ pub enum WakeConfig {
     ControlStep,
     /// Every arrival of a frame.
     OnReception,
+}
+
+/// Something that robots repeat. Each has phases of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rhythm {
+    /// Control steps.
+    ControlStep,
+    /// Turns of statuses.
+    Status,
+    /// Turns of requests.
+    Request,
+    /// Turns of strands.
+    Strand,
+    /// Rounds in which news is passed on.
+    Relay,
+    /// Statuses that say nothing new.
+    StatusRefresh,
+    /// Strands that say nothing new.
+    StrandRefresh,
+    /// Probes of a failure detector.
+    Probe,
+    /// Changes of direction.
+    Leg,
+}
+
+/// Where each robot's rhythms begin, in one trial.
+#[derive(Clone, Copy, Debug)]
+pub struct Phases(Option<KeyedStreams>);
+
+impl Phases {
+    /// As `config` says, in a trial with these `streams`.
+    #[must_use]
+    pub fn new(config: PhaseConfig, streams: Streams) -> Self {
+        Self(match config {
+            PhaseConfig::Together => None,
+            PhaseConfig::Random => Some(streams.keyed(PHASE)),
+        })
+    }
+
+    /// How much of an interval is over when `robot` begins with it: a whole number below `interval`, each as likely, in the unit
+    /// of `interval`; 0 for all where they are together.
+    #[must_use]
+    pub fn of(self, robot: ActorId, rhythm: Rhythm, interval: u64) -> u64 {
+        let Some(draws) = self.0.filter(|_| interval > 1) else {
+            return 0;
+        };
+        let [word, _] = draws.first_two(robot.0, rhythm as u32, 0);
+        ((u128::from(word) * u128::from(interval)) >> 64) as u64
+    }
+
+    /// The same of an interval in time.
+    #[must_use]
+    pub fn span(self, robot: ActorId, rhythm: Rhythm, interval: Span) -> Span {
+        Span::from_nanos(self.of(robot, rhythm, interval.as_nanos()))
+    }
 }

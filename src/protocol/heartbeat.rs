@@ -10,11 +10,12 @@ use std::rc::Rc;
 use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
+use super::control::{ControlConfig, Phases, Rhythm};
 use super::detector::{Carried, Circumstances, Detector, DetectorConfig, Monitored, Probe, Sign};
 use super::gossip::{GossipConfig, Turns};
 use super::wander::{Ground, Wander};
 use super::{CodecError, Input, Output, Protocol, Topic, Wake};
-use crate::engine::{ActorId, SimTime, Span, Streams};
+use crate::engine::{ActorId, SimTime, Streams};
 
 /// Settings that all robots share.
 #[derive(Debug)]
@@ -22,26 +23,30 @@ pub struct Settings {
     status_turns: Turns,
     detector: DetectorConfig,
     circumstances: Circumstances,
+    phases: Phases,
     ground: Ground,
 }
 
 impl Settings {
-    /// From a scenario's gossip and detector settings, for a swarm of `robots`, in a trial with these `streams`.
+    /// From a scenario's gossip, detector and control settings, for a swarm of `robots`, in a trial with these `streams`.
     #[must_use]
     pub fn new(
         gossip: &GossipConfig,
         detector: &DetectorConfig,
-        control_period: Span,
+        control: &ControlConfig,
         robots: usize,
         streams: Streams,
     ) -> Self {
+        let period = control.period();
+        let phases = Phases::new(control.phase, streams);
         Self {
-            status_turns: Turns::new(gossip.status.timing(control_period), 0, streams),
+            status_turns: Turns::new(gossip.status.timing(period), Rhythm::Status, phases, streams),
             detector: detector.clone(),
             circumstances: Circumstances {
                 robots,
-                status_interval: gossip.status.longest_pause(control_period),
+                status_interval: gossip.status.longest_pause(period),
             },
+            phases,
             ground: Ground::still(),
         }
     }
@@ -102,7 +107,7 @@ impl<P> Heartbeat<P> {
     pub fn new(id: ActorId, settings: Rc<Settings>) -> Self {
         Self {
             id,
-            detector: Detector::new(&settings.detector, settings.circumstances, id),
+            detector: Detector::new(&settings.detector, settings.circumstances, settings.phases, id),
             settings,
             control_steps: 0,
             sent: 0,

@@ -15,6 +15,7 @@ use crate::geometry::{Pose, Vec2};
 use detector::DetectorConfig;
 
 pub mod backbone;
+mod completion;
 pub mod control;
 pub mod detector;
 pub mod gossip;
@@ -22,6 +23,8 @@ pub mod heartbeat;
 mod robot_table;
 pub mod rumor;
 pub mod wander;
+
+pub use completion::CompletionConfig;
 
 /// Index of a topic in [`Protocol::TOPICS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

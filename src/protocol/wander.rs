@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::control::{PhaseConfig, Phases, Rhythm};
 use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
 use crate::geometry::{Vec2, direction, unit};
 use crate::quantity::{NonNegative, Positive};
@@ -63,16 +64,18 @@ pub struct Ground {
     config: WanderConfig,
     /// Half the width and height within which waypoints lie, metres.
     half: Vec2,
+    phases: Phases,
     draws: KeyedStreams,
 }
 
 impl Ground {
     /// Robots move as `config` says, between waypoints at most `half` from the arena's centre in each axis, metres.
     #[must_use]
-    pub fn new(config: WanderConfig, half: Vec2, streams: Streams) -> Self {
+    pub fn new(config: WanderConfig, half: Vec2, phases: Phases, streams: Streams) -> Self {
         Self {
             config,
             half,
+            phases,
             draws: streams.keyed(LEG),
         }
     }
@@ -80,7 +83,9 @@ impl Ground {
     /// Robots that stand still.
     #[must_use]
     pub fn still() -> Self {
-        Self::new(WanderConfig::Still, Vec2::zeros(), Streams::new(0, 0))
+        let streams = Streams::new(0, 0);
+        let phases = Phases::new(PhaseConfig::Together, streams);
+        Self::new(WanderConfig::Still, Vec2::zeros(), phases, streams)
     }
 }
 
@@ -103,9 +108,9 @@ impl Wander {
             WanderConfig::Still => None,
             WanderConfig::RandomWalk { speed, leg } => {
                 if now >= self.until {
+                    self.until = self.end_of_leg(ground, robot, now, Span::from_secs(leg.get()));
                     let [angle, _] = self.draw(ground, robot);
                     self.aim = unit(angle * TAU);
-                    self.until = now + Span::from_secs(leg.get());
                 }
                 Some(self.aim * speed.get())
             }
@@ -129,6 +134,17 @@ impl Wander {
         }
     }
 
+    /// The end of the leg that begins at `now`: the first one ends early by the robot's phase, later ones are as long on average
+    /// as they are asked to be, though robots turn at control steps alone.
+    fn end_of_leg(&self, ground: &Ground, robot: ActorId, now: SimTime, leg: Span) -> SimTime {
+        let leg = Span::from_nanos(leg.as_nanos().max(1));
+        if self.legs == 0 {
+            return now + leg - ground.phases.span(robot, Rhythm::Leg, leg);
+        }
+        let missed = now.since(self.until).as_nanos() / leg.as_nanos();
+        self.until + leg * (missed + 1)
+    }
+
     /// Two numbers in [0, 1) for the next leg.
     fn draw(&mut self, ground: &Ground, robot: ActorId) -> [f64; 2] {
         let words = ground.draws.first_two(robot.0, 0, self.legs);
@@ -142,7 +158,9 @@ mod tests {
     use super::*;
 
     fn ground(config: WanderConfig) -> Ground {
-        Ground::new(config, Vec2::new(4.0, 3.0), Streams::new(5, 0))
+        let streams = Streams::new(5, 0);
+        let phases = Phases::new(PhaseConfig::Together, streams);
+        Ground::new(config, Vec2::new(4.0, 3.0), phases, streams)
     }
 
     /// Places of a robot at every 0.1 s.

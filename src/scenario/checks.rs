@@ -189,7 +189,8 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
     let period = scenario.control.period.get();
     let tick = scenario.motion.tick.get();
     let time_limit = scenario.time_limit.get();
-    let hold = scenario.metrics.hold.get();
+    let completion = scenario.completion();
+    let hold = completion.hold();
     if !Span::from_secs(period)
         .as_nanos()
         .is_multiple_of(Span::from_secs(tick).as_nanos())
@@ -203,15 +204,22 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         let help = "make `time_limit` longer than `control.period`";
         found.push(Problem::new("time_limit", message, help).with(&["control.period"]));
     }
-    let held = match scenario.protocol {
-        ProtocolConfig::Backbone(_) => Some("targets must be held"),
-        ProtocolConfig::Rumor(_) => Some("rumours must be known to all"),
+    let said = match &scenario.protocol {
+        ProtocolConfig::Backbone(backbone) => Some((backbone.completion, "targets must be held")),
+        ProtocolConfig::Rumor(rumor) => Some((rumor.completion, "rumours must be known to all")),
         ProtocolConfig::Heartbeat => None,
     };
-    if let Some(held) = held.filter(|_| hold >= time_limit) {
-        let message = format!("no trial can complete: {held} for {hold} s, and a trial ends at {time_limit} s");
-        let help = "make `time_limit` longer, or `metrics.hold` shorter";
-        found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
+    if let Some((said, held)) = said {
+        if hold >= time_limit {
+            let message = format!("no trial can complete: {held} for {hold} s, and a trial ends at {time_limit} s");
+            let help = "make `time_limit` longer, or the hold of `protocol.completion` shorter";
+            found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
+        }
+        if said.is_some() && scenario.metrics.hold.is_some() {
+            let message = "`metrics.hold` and `protocol.completion` both say when the mission is complete";
+            let help = "leave out `metrics.hold`: it is the older way to say `completion: Held(seconds)`";
+            found.push(Problem::new("metrics.hold", message, help).with(&["protocol.completion"]));
+        }
     }
     found
 }

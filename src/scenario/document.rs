@@ -21,6 +21,16 @@ pub trait Document: DeserializeOwned + Serialize + JsonSchema {
     /// What no field shows on its own.
     fn problems(&self) -> Vec<Problem>;
 
+    /// The same, with what it says in an older way said as of now.
+    fn settled(self) -> Self {
+        self
+    }
+
+    /// What is allowed and hardly meant, of one that has no problem.
+    fn warnings(&self) -> Vec<Problem> {
+        Vec::new()
+    }
+
     /// The whole of it as text, defaults included.
     fn to_ron(&self) -> String;
 }
@@ -40,6 +50,14 @@ impl Document for Scenario {
 
     fn problems(&self) -> Vec<Problem> {
         problems(self)
+    }
+
+    fn settled(self) -> Self {
+        self.settled()
+    }
+
+    fn warnings(&self) -> Vec<Problem> {
+        super::warnings::warnings(self)
     }
 
     fn to_ron(&self) -> String {

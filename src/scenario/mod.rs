@@ -4,7 +4,7 @@
 //! line worked in, and answer a [`Scenario`] that holds, or a [`Report`] of everything that is wrong with it, each
 //! with its place. On the way from text to scenario: `token` and `tree` know what stands where, `overrides` and
 //! `source` work overrides into the text, `read` has serde make sense of it, `checks` finds what no field shows on its
-//! own, `explain` and `shape` say what would be right, `report` shows it.
+//! own, `warnings` what is allowed and hardly meant, `explain` and `shape` say what would be right, `report` shows it.
 
 mod checks;
 mod detector;
@@ -25,11 +25,12 @@ mod source;
 mod study;
 mod token;
 mod tree;
+mod warnings;
 
 pub use file::{contents, json_schema, load, question, to_ron};
 pub use overrides::Override;
-pub use read::parse;
-pub use report::{Diagnostic, Place, Report, Style};
+pub use read::{examine, parse};
+pub use report::{Diagnostic, Place, Report, Style, Warnings};
 pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,
@@ -42,7 +43,6 @@ use crate::engine::Span;
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
-use crate::protocol::Protocol as _;
 use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
@@ -50,6 +50,7 @@ use crate::protocol::gossip::GossipConfig;
 use crate::protocol::heartbeat::Heartbeat;
 use crate::protocol::rumor::{Rumor, RumorConfig};
 use crate::protocol::wander::WanderConfig;
+use crate::protocol::{CompletionConfig, Protocol as _};
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
 
@@ -103,6 +104,31 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// When its mission is complete: as its protocol says, else held for as long as the metrics say, else for 10 s.
+    #[must_use]
+    pub fn completion(&self) -> CompletionConfig {
+        let said = match &self.protocol {
+            ProtocolConfig::Backbone(backbone) => backbone.completion,
+            ProtocolConfig::Rumor(rumor) => rumor.completion,
+            ProtocolConfig::Heartbeat => None,
+        };
+        let held = self.metrics.hold.map(CompletionConfig::Held);
+        said.or(held).unwrap_or_default()
+    }
+
+    /// The same scenario, its completion said where it belongs: with the protocol.
+    fn settled(mut self) -> Self {
+        let completion = self.completion();
+        let said = match &mut self.protocol {
+            ProtocolConfig::Backbone(backbone) => &mut backbone.completion,
+            ProtocolConfig::Rumor(rumor) => &mut rumor.completion,
+            ProtocolConfig::Heartbeat => return self,
+        };
+        *said = Some(completion);
+        self.metrics.hold = None;
+        self
+    }
+
     /// What its failure detector is told of the swarm.
     #[must_use]
     pub fn circumstances(&self) -> Circumstances {

@@ -12,7 +12,7 @@ use super::document::Document;
 use super::explain::{Finding, explain, nearest};
 use super::overrides::Override;
 use super::path::{FieldPath, Step, field_at, follow, head, path_at};
-use super::report::{Diagnostic, Place, Report};
+use super::report::{Diagnostic, Place, Report, Warnings};
 use super::source::{Source, blank};
 use super::token::Span;
 use super::tree::{self, MAX_DEPTH};
@@ -33,30 +33,23 @@ pub fn parse(name: &str, text: &str, overrides: &[Override]) -> Result<Scenario,
     document(name, text, overrides)
 }
 
+/// Reads the scenario in `text` as [`parse`] does, and says too what looks wrong with one that holds.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn examine(name: &str, text: &str, overrides: &[Override]) -> Result<(Scenario, Warnings), Report> {
+    let mut reader = Reader::new(name, text, overrides);
+    let scenario: Scenario = reader.read()?;
+    let (diagnostics, more) = reader.between(scenario.warnings());
+    Ok((scenario, Warnings { diagnostics, more }))
+}
+
 /// Reads the document in `text`, the contents of the file `name`, with `overrides` worked in, in order.
 ///
 /// # Errors
 /// Everything that is wrong with it.
 pub(super) fn document<D: Document>(name: &str, text: &str, overrides: &[Override]) -> Result<D, Report> {
-    let mut reader = Reader {
-        name,
-        file: text.into(),
-        overrides,
-        source: Source::new(text),
-        diagnostics: Vec::new(),
-        document: PhantomData::<D>,
-    };
-    for (index, given) in overrides.iter().enumerate() {
-        let resolved = typed(reader.source.text()).ok().map(|document: D| document.to_ron());
-        if let Err(misfit) = given.apply(index, &mut reader.source, resolved.as_deref()) {
-            reader.diagnostics.extend(misfit.diagnostics);
-        }
-    }
-    let document = reader.document();
-    match document {
-        Some(document) if reader.diagnostics.is_empty() => Ok(document),
-        _ => Err(reader.report()),
-    }
+    Reader::new(name, text, overrides).read()
 }
 
 /// What serde makes of `text`.
@@ -105,10 +98,38 @@ struct Reader<'a, D> {
     overrides: &'a [Override],
     source: Source,
     diagnostics: Vec<Diagnostic>,
+    /// How many faults are known beside the diagnostics.
+    more: usize,
     document: PhantomData<D>,
 }
 
-impl<D: Document> Reader<'_, D> {
+impl<'a, D: Document> Reader<'a, D> {
+    fn new(name: &'a str, text: &str, overrides: &'a [Override]) -> Self {
+        Self {
+            name,
+            file: text.into(),
+            overrides,
+            source: Source::new(text),
+            diagnostics: Vec::new(),
+            more: 0,
+            document: PhantomData,
+        }
+    }
+
+    /// The document, or everything that is wrong with it.
+    fn read(&mut self) -> Result<D, Report> {
+        for (index, given) in self.overrides.iter().enumerate() {
+            let resolved = typed(self.source.text()).ok().map(|document: D| document.to_ron());
+            if let Err(misfit) = given.apply(index, &mut self.source, resolved.as_deref()) {
+                self.diagnostics.extend(misfit.diagnostics);
+            }
+        }
+        match self.document() {
+            Some(document) if self.diagnostics.is_empty() => Ok(document.settled()),
+            _ => Err(self.report()),
+        }
+    }
+
     /// The document, or what is left of it without its faults, whose diagnostics are kept.
     fn document(&mut self) -> Option<D> {
         let mut text = self.source.text().to_owned();
@@ -168,6 +189,7 @@ impl<D: Document> Reader<'_, D> {
     /// Reports what is wrong with the form of the text.
     fn form(&mut self, faults: &[super::token::Fault], text: &str) {
         let root = tree::read(text).0;
+        self.more += faults.len().saturating_sub(limits::DIAGNOSTICS);
         for fault in faults.iter().take(limits::DIAGNOSTICS) {
             let path = root.as_ref().map(|root| path_at(root, fault.span.start, text));
             self.add(Finding {
@@ -204,36 +226,58 @@ impl<D: Document> Reader<'_, D> {
                 blanked.iter().any(|left_out| touches(left_out) || misspelt(left_out))
             })
         };
-        for problem in document.problems().into_iter().filter(|problem| !caused(problem)) {
-            let finding = between(problem, &root, &text);
-            self.add(finding);
-        }
+        let problems = document.problems().into_iter().filter(|problem| !caused(problem));
+        let (found, more) = self.between(problems.collect());
+        self.diagnostics.extend(found);
+        self.more += more;
+    }
+
+    /// The first of `problems`, each placed, in the order of the text, and how many more there are.
+    fn between(&self, problems: Vec<Problem>) -> (Vec<Diagnostic>, usize) {
+        let text = self.source.text();
+        let (Some(root), _) = tree::read(text) else {
+            return (Vec::new(), problems.len());
+        };
+        let mut found: Vec<Finding> = problems
+            .into_iter()
+            .map(|problem| between(problem, &root, text))
+            .collect();
+        found.sort_by_key(|finding| finding.span.start);
+        let more = found.len().saturating_sub(limits::DIAGNOSTICS);
+        found.truncate(limits::DIAGNOSTICS);
+        (found.into_iter().map(|finding| self.diagnose(finding)).collect(), more)
     }
 
     fn add(&mut self, finding: Finding) {
+        let diagnostic = self.diagnose(finding);
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn diagnose(&self, finding: Finding) -> Diagnostic {
         let location = self.source.locate(&finding.span);
         let given = location.override_index.and_then(|index| self.overrides.get(index));
         let (prefix, name, text) = match given {
             Some(given) => (given.prefix(), given.name(), given.text()),
             None => (String::new(), self.name, &self.file),
         };
-        self.diagnostics.push(Diagnostic {
+        Diagnostic {
             message: format!("{prefix}{}", finding.message),
             help: finding.help,
             path: Some(finding.path.to_string()).filter(|path| !path.is_empty()),
             place: Some(Place::new(name, text, location.span, finding.label)),
-        });
+        }
     }
 
-    fn report(mut self) -> Report {
+    fn report(&mut self) -> Report {
         // By line; what stands in overrides comes after the file.
-        self.diagnostics.sort_by_key(|diagnostic| {
+        let mut diagnostics = std::mem::take(&mut self.diagnostics);
+        diagnostics.sort_by_key(|diagnostic| {
             let place = diagnostic.place.as_ref();
             place.map(|place| (place.name != self.name, place.line, place.column))
         });
-        Report {
-            diagnostics: self.diagnostics,
-        }
+        let more = self.more + diagnostics.len().saturating_sub(limits::DIAGNOSTICS);
+        diagnostics.truncate(limits::DIAGNOSTICS);
+        Report { diagnostics, more }
     }
 }
 

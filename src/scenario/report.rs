@@ -4,8 +4,9 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, Severity, SourceCode};
 
+use super::limits;
 use super::lines::{line_of, line_start};
 
 /// Longest line that is shown around an error, bytes.
@@ -13,7 +14,7 @@ const LONGEST_LINE: usize = 400;
 /// Columns of a report that is not for a terminal.
 const WIDTH: usize = 80;
 
-/// One thing that is wrong, and where.
+/// One thing that is wrong, or looks so, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// What is wrong.
@@ -84,22 +85,26 @@ impl std::error::Error for Diagnostic {}
 struct Drawn<'d> {
     message: String,
     diagnostic: &'d Diagnostic,
+    severity: Severity,
     source: Option<NamedSource<Arc<str>>>,
 }
 
 impl<'d> Drawn<'d> {
-    fn new(diagnostic: &'d Diagnostic) -> Self {
+    fn new(diagnostic: &'d Diagnostic, severity: Severity) -> Self {
         let place = diagnostic.place.as_ref();
         let shown = place.filter(|place| place.is_on_a_short_line());
+        let kind = if severity == Severity::Warning { "warning: " } else { "" };
         let message = match place {
             Some(place) if shown.is_none() => {
-                format!("{}:{}:{}: {}", place.name, place.line, place.column, diagnostic.message)
+                let Place { name, line, column, .. } = place;
+                format!("{kind}{name}:{line}:{column}: {}", diagnostic.message)
             }
-            _ => diagnostic.message.clone(),
+            _ => format!("{kind}{}", diagnostic.message),
         };
         Self {
             message,
             diagnostic,
+            severity,
             source: shown.map(|place| NamedSource::new(&place.name, Arc::clone(&place.text))),
         }
     }
@@ -114,6 +119,10 @@ impl fmt::Display for Drawn<'_> {
 impl std::error::Error for Drawn<'_> {}
 
 impl miette::Diagnostic for Drawn<'_> {
+    fn severity(&self) -> Option<Severity> {
+        Some(self.severity)
+    }
+
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         let help = self.diagnostic.help.as_ref()?;
         Some(Box::new(help))
@@ -151,31 +160,74 @@ impl Style {
 /// Everything that is wrong with a scenario: one diagnostic or more.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// What is wrong, in the order of the file.
+    /// What is wrong, in the order of the file; the first of it where there is more than helps.
     pub diagnostics: Vec<Diagnostic>,
+    /// How much more is known to be wrong.
+    pub more: usize,
+}
+
+/// What looks wrong with a scenario that holds: settings that do nothing, or not what their author will have meant.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Warnings {
+    /// What looks wrong, in the order of the file; the first of it where there is more than helps.
+    pub diagnostics: Vec<Diagnostic>,
+    /// How much more looks wrong.
+    pub more: usize,
 }
 
 impl Report {
     /// The report as people read it, each diagnostic with the line that it is about.
     #[must_use]
     pub fn render(&self, style: Style) -> String {
-        let theme = if style.colour {
-            GraphicalTheme::unicode()
-        } else {
-            GraphicalTheme::unicode_nocolor()
-        };
-        let handler = GraphicalReportHandler::new_themed(theme)
-            .with_width(style.width)
-            .with_links(false);
-        let mut text = String::new();
-        for diagnostic in &self.diagnostics {
-            // Writing to a string does not fail; were it to, the message alone still says what is wrong.
-            if handler.render_report(&mut text, &Drawn::new(diagnostic)).is_err() {
-                text.push_str(&diagnostic.message);
-            }
-        }
-        text
+        render(&self.diagnostics, self.more, Severity::Error, style)
     }
+}
+
+impl Warnings {
+    /// Whether nothing looks wrong.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.diagnostics.is_empty()
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.diagnostics.len() + self.more
+    }
+
+    /// The warnings as people read them, each with the line that it is about.
+    #[must_use]
+    pub fn render(&self, style: Style) -> String {
+        render(&self.diagnostics, self.more, Severity::Warning, style)
+    }
+}
+
+fn render(diagnostics: &[Diagnostic], more: usize, severity: Severity, style: Style) -> String {
+    let theme = if style.colour {
+        GraphicalTheme::unicode()
+    } else {
+        GraphicalTheme::unicode_nocolor()
+    };
+    let handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(style.width)
+        .with_links(false);
+    let mut text = String::new();
+    for diagnostic in diagnostics {
+        // Writing to a string does not fail; were it to, the message alone still says what is wrong.
+        if handler
+            .render_report(&mut text, &Drawn::new(diagnostic, severity))
+            .is_err()
+        {
+            text.push_str(&diagnostic.message);
+        }
+    }
+    if more > 0 {
+        text.push_str(&format!("  and {more} more\n"));
+    } else if severity == Severity::Error && diagnostics.len() >= limits::DIAGNOSTICS {
+        text.push_str("  and perhaps more: reading ends here\n");
+    }
+    text
 }
 
 impl fmt::Display for Report {
@@ -186,10 +238,14 @@ impl fmt::Display for Report {
 
 impl std::error::Error for Report {}
 
+impl From<Vec<Diagnostic>> for Report {
+    fn from(diagnostics: Vec<Diagnostic>) -> Self {
+        Self { diagnostics, more: 0 }
+    }
+}
+
 impl From<Diagnostic> for Report {
     fn from(diagnostic: Diagnostic) -> Self {
-        Self {
-            diagnostics: vec![diagnostic],
-        }
+        vec![diagnostic].into()
     }
 }

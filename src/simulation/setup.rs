@@ -2,23 +2,20 @@
 
 use std::str::FromStr;
 
-use rand::RngExt as _;
 use tokio_util::sync::CancellationToken;
 
 use super::air::Air;
 use super::error::RunError;
 use super::run::{Rhythm, Run};
-use crate::engine::{ActorId, Actors, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
+use crate::engine::{ActorId, Actors, Driver, Inline, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
 use crate::geometry::Pose;
 use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
-use crate::protocol::control::{ControlConfig, PhaseConfig, WakeConfig};
+use crate::protocol::control::{ControlConfig, Phases, Rhythm as Repeated, WakeConfig};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
-use crate::protocol::{Protocol, Robot};
+use crate::protocol::{CompletionConfig, Protocol, Robot};
 use crate::radio::{Medium, RadioConfig};
-
-const PHASE: Purpose = Purpose::new("control.phase");
 
 /// How robots are run. Both give the same results, byte for byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,6 +72,8 @@ pub struct Setup {
     pub mission: Option<Mission>,
     /// How many rumours all robots are to know, which then is completion; 0 for none.
     pub rumors: usize,
+    /// When the mission, or the spread of the rumours, is complete.
+    pub completion: CompletionConfig,
 }
 
 impl Setup {
@@ -143,7 +142,7 @@ impl Setup {
 
     fn rhythm(&self) -> Rhythm {
         Rhythm {
-            control_period: Span::from_secs(self.control.period.get()),
+            control_period: self.control.period(),
             sample_interval: Span::from_secs(self.metrics.sample_interval.get()),
             time_limit: SimTime::ZERO + self.time_limit,
             wake_on_reception: self.control.wake == WakeConfig::OnReception,
@@ -165,9 +164,10 @@ impl Setup {
                 message: self.radio.message_header_bytes,
             },
             radio_range: self.radio.range.get(),
-            control_period: Span::from_secs(self.control.period.get()),
+            control_period: self.control.period(),
             mission: self.mission.clone(),
             rumors: self.rumors,
+            completion: self.completion,
             // A status may be that much older than the silence that it began, when its latency is long.
             status_memory: self.detector.longest_silence(circumstances) * 2,
             patience: self.detector.usual_silence(circumstances),
@@ -177,13 +177,8 @@ impl Setup {
 
     /// When each robot takes its first control step.
     fn first_steps(&self, robots: usize, streams: Streams) -> Vec<SimTime> {
-        let phases = streams.keyed(PHASE);
-        let period = Span::from_secs(self.control.period.get()).as_nanos();
-        (0..robots as u32)
-            .map(|robot| match self.control.phase {
-                PhaseConfig::Together => SimTime::ZERO,
-                PhaseConfig::Random => SimTime::from_nanos(phases.at(robot, 0, 0).random_range(0..period)),
-            })
-            .collect()
+        let phases = Phases::new(self.control.phase, streams);
+        let first = |robot| SimTime::ZERO + phases.span(ActorId(robot), Repeated::ControlStep, self.control.period());
+        (0..robots as u32).map(first).collect()
     }
 }

@@ -12,6 +12,7 @@ use crate::geometry::Vec2;
 use crate::metrics::{Mission, MissionTarget, TrialRecord};
 use crate::motion::{DeployError, deploy};
 use crate::protocol::backbone::{self, BackboneConfig};
+use crate::protocol::control::Phases;
 use crate::protocol::detector::Probe;
 use crate::protocol::heartbeat::{Heartbeat, Settings};
 use crate::protocol::rumor;
@@ -76,16 +77,16 @@ fn run(
         body_radius,
         &setup.streams(),
     )?;
-    let period = Span::from_secs(scenario.control.period.get());
+    let control = &scenario.control;
     let streams = setup.streams();
     let record = match &scenario.protocol {
         ProtocolConfig::Backbone(config) => {
-            let robots = backbone::swarm(config, &scenario.gossip, &scenario.detector, period, &poses, streams);
+            let robots = backbone::swarm(config, &scenario.gossip, &scenario.detector, control, &poses, streams);
             setup.mission = robots.first().map(|robot| mission(config, robot.root()));
             setup.run(poses, robots, driver, stop)
         }
         ProtocolConfig::Heartbeat => {
-            let settings = Settings::new(&scenario.gossip, &scenario.detector, period, poses.len(), streams);
+            let settings = Settings::new(&scenario.gossip, &scenario.detector, control, poses.len(), streams);
             let settings = Rc::new(settings.wandering(ground(scenario, streams)));
             if scenario.detector.sends() {
                 let robots = heartbeats::<Rc<Probe>>(swarm.robots, &settings);
@@ -97,7 +98,7 @@ fn run(
         }
         ProtocolConfig::Rumor(config) => {
             let ground = ground(scenario, streams);
-            let robots = rumor::swarm(config, &scenario.gossip, period, swarm.robots, ground, streams);
+            let robots = rumor::swarm(config, &scenario.gossip, control, swarm.robots, ground, streams);
             setup.rumors = config.sources.rumors();
             setup.run(poses, robots, driver, stop)
         }
@@ -110,7 +111,8 @@ fn ground(scenario: &Scenario, streams: Streams) -> Ground {
     let (width, height) = &scenario.arena.size;
     let margin = 2.0 * scenario.motion.body_radius.get();
     let half = [width, height].map(|size| (size.get() / 2.0 - margin).max(0.0));
-    Ground::new(scenario.wander, Vec2::new(half[0], half[1]), streams)
+    let phases = Phases::new(scenario.control.phase, streams);
+    Ground::new(scenario.wander, Vec2::new(half[0], half[1]), phases, streams)
 }
 
 /// Robots whose messages carry what their detectors say by `P`.
@@ -136,6 +138,7 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         trace: None,
         mission: None,
         rumors: 0,
+        completion: scenario.completion(),
     }
 }
 

@@ -109,3 +109,25 @@ fn what_robots_hear_twice_is_counted_and_a_finished_rumour_ends_the_trial() {
         assert!(duplicate > 0 && record.ledger.iter().all(TopicFates::is_balanced));
     }
 }
+
+/// All of ten robots in range of each other crash at 1.5 s, before those that heard the rumour at once have told the rest, and are
+/// well again 20 s later. Nobody knows anything meanwhile, so nothing is known to all.
+#[test]
+fn a_rumour_is_not_known_to_all_while_nobody_is_alive() {
+    let text = |rule: &str| {
+        format!(
+            "Scenario(name: \"dead\", time_limit: 60.0, swarm: (robots: 10, deploy: Cluster(radius: 0.6)), control: (period: 1.0),
+             protocol: Rumor(mode: PushPull, sources: Robots([3]), completion: {rule}), gossip: (relay: (interval: 1.0)),
+             radio: (loss: Bernoulli(0.5)), faults: [Crash(robots: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9], at: 0.5, lasts: For(20.0))])"
+        )
+    };
+    for rule in ["Reached", "EachVisited", "Held(3.0)"] {
+        for record in run(&super::scenario(&text(rule)), 5) {
+            let Outcome::Completed { step } = record.outcome else {
+                panic!("{:?}", record.outcome)
+            };
+            assert!(step >= 20, "complete after {step} steps, while all were down");
+            assert!(record.spread[0].informed.iter().all(Option::is_some));
+        }
+    }
+}

@@ -7,7 +7,7 @@ use super::style::{AXIS, Marker, Stroke, TEXT};
 use crate::geometry::Vec2;
 
 /// Longest side of the arena on the sheet, pixels.
-const ARENA_PIXELS: f64 = 640.0;
+pub const ARENA_PIXELS: f64 = 640.0;
 const LEFT: f64 = 58.0;
 const TOP: f64 = 62.0;
 const BOTTOM: f64 = 50.0;

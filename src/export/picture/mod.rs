@@ -2,6 +2,7 @@
 
 mod canvas;
 mod final_state;
+mod labels;
 mod pareto;
 mod shapes;
 mod style;

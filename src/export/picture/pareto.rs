@@ -2,6 +2,7 @@
 
 use svg::{Document, Node};
 
+use super::labels::{Box, NEAR, Taken, room};
 use super::shapes::{element, line, marker, path, polyline, text};
 use super::style::{AXIS, Marker, Shape, Stroke, TEXT};
 use crate::geometry::Vec2;
@@ -13,8 +14,18 @@ const ACROSS: f64 = 560.0;
 const UP: f64 = 400.0;
 const LEFT: f64 = 84.0;
 const TOP: f64 = 62.0;
-const WIDTH: f64 = LEFT + ACROSS + 176.0;
+/// Room on the right of the plane: as much as a label or the list of names needs, within these bounds.
+const RIGHT: [f64; 2] = [176.0, 380.0];
 const HEIGHT: f64 = TOP + UP + 56.0;
+/// Of labels and of the list, pixels.
+const LETTERS: f64 = 12.0;
+const LINE: f64 = 16.0;
+/// Size of a mark with what belongs to it, pixels.
+const MARK: f64 = 12.0;
+/// Furthest that a name may stand from its mark, pixels; where one had to stand further, numbers do.
+const FURTHEST: f64 = 60.0;
+/// Longest name that is written, characters.
+const LONGEST: usize = 48;
 const FRONT: &str = "#d55e00";
 const BEATEN: &str = "#6b6b6b";
 
@@ -116,10 +127,17 @@ impl Plane<'_> {
     }
 
     fn document(&self, points: &[ParetoPoint]) -> Document {
+        let names: Vec<String> = points.iter().map(|point| self.name(point)).collect();
+        let marks: Vec<Vec2> = points.iter().map(|point| self.pixel(point.x, point.y)).collect();
+        let widest = names.iter().map(|name| room(name, LETTERS).x).fold(0.0, f64::max);
+        let right = (widest + 60.0).clamp(RIGHT[0], RIGHT[1]);
+        let width = LEFT + ACROSS + right;
+        let labels = Labels::of(&marks, &names, right);
+        let height = HEIGHT.max(TOP + LINE * labels.list.len() as f64 + 20.0);
         let mut document = Document::new()
-            .set("viewBox", format!("0 0 {WIDTH:.0} {HEIGHT:.0}"))
-            .set("width", format!("{WIDTH:.0}"))
-            .set("height", format!("{HEIGHT:.0}"))
+            .set("viewBox", format!("0 0 {width:.0} {height:.0}"))
+            .set("width", format!("{width:.0}"))
+            .set("height", format!("{height:.0}"))
             .set("font-family", "Helvetica, Arial, sans-serif");
         document.append(element(
             "rect",
@@ -133,10 +151,47 @@ impl Plane<'_> {
         for point in points {
             self.bars(&mut document, point);
         }
-        for point in points {
-            self.point(&mut document, point);
+        for (label, &at) in labels.placed.iter().zip(&marks) {
+            let nearest = label.1.nearest(at);
+            if (nearest - at).norm() > NEAR {
+                document.append(line(at, nearest, stroke(AXIS, 0.7, 0.7)));
+            }
+        }
+        for (point, &at) in points.iter().zip(&marks) {
+            let shape = if point.on_front { Shape::Disc } else { Shape::Ring };
+            let colour = colour(point);
+            document.append(marker(
+                at,
+                Marker {
+                    shape,
+                    colour,
+                    size: 5.0,
+                },
+            ));
+        }
+        for (label, place) in &labels.placed {
+            let baseline = Vec2::new(f64::midpoint(place.from.x, place.to.x), place.to.y - 0.25 * LETTERS);
+            document.append(text(baseline, LETTERS, "middle", TEXT, label));
+        }
+        for (row, entry) in labels.list.iter().enumerate() {
+            let at = Vec2::new(LEFT + ACROSS + 30.0, TOP + LINE * (row as f64 + 1.0));
+            document.append(text(at, LETTERS, "start", TEXT, entry));
         }
         document
+    }
+
+    /// What a point is called, its middle left out where that is long.
+    fn name(&self, point: &ParetoPoint) -> String {
+        let setting = self.comparison.setting(&point.setting);
+        let name = setting.map_or(point.setting.as_str(), |setting| &setting.label);
+        let letters: Vec<char> = name.chars().collect();
+        if letters.len() <= LONGEST {
+            return name.to_owned();
+        }
+        let half = LONGEST / 2;
+        let [head, tail] =
+            [&letters[..half], &letters[letters.len() - half + 1..]].map(|part| part.iter().collect::<String>());
+        format!("{head}…{tail}")
     }
 
     fn axes(&self, document: &mut Document) {
@@ -186,23 +241,46 @@ impl Plane<'_> {
         }
         document.append(path(&bars, stroke(colour(point), 1.2, 0.8)));
     }
+}
 
-    fn point(&self, document: &mut Document, point: &ParetoPoint) {
-        let at = self.pixel(point.x, point.y);
-        let shape = if point.on_front { Shape::Disc } else { Shape::Ring };
-        document.append(marker(
-            at,
-            Marker {
-                shape,
-                colour: colour(point),
-                size: 5.0,
-            },
-        ));
-        let label = self
-            .comparison
-            .setting(&point.setting)
-            .map_or(point.setting.as_str(), |setting| &setting.label);
-        document.append(text(at + Vec2::new(8.0, 15.0), 12.0, "start", TEXT, label));
+/// What stands beside the points, and where, so that nothing overlaps.
+struct Labels {
+    /// For each point.
+    placed: Vec<(String, Box)>,
+    /// What the numbers mean, if the labels are numbers.
+    list: Vec<String>,
+}
+
+impl Labels {
+    /// Names where all of them find a place near their marks, else numbers and a list.
+    fn of(marks: &[Vec2], names: &[String], right: f64) -> Self {
+        let sheet = |right: f64| Box {
+            from: Vec2::new(LEFT + 2.0, TOP - 10.0),
+            to: Vec2::new(LEFT + ACROSS + right, TOP + UP - 2.0),
+        };
+        let place = |labels: &[String], right: f64, most: f64| -> Option<Vec<(String, Box)>> {
+            let mut taken = Taken::new(sheet(right), marks, MARK);
+            let placed = labels
+                .iter()
+                .zip(marks)
+                .map(|(label, &mark)| Some((label.clone(), taken.place(mark, room(label, LETTERS), most)?)));
+            placed.collect()
+        };
+        if let Some(placed) = place(names, right - 4.0, FURTHEST) {
+            return Self {
+                placed,
+                list: Vec::new(),
+            };
+        }
+        let numbers: Vec<String> = (1..=names.len()).map(|number| number.to_string()).collect();
+        let list = names
+            .iter()
+            .zip(&numbers)
+            .map(|(name, number)| format!("{number}  {name}"))
+            .collect();
+        // More than find a place on the whole sheet are in the list alone.
+        let placed = place(&numbers, 20.0, ACROSS + UP).unwrap_or_default();
+        Self { placed, list }
     }
 }
 
@@ -212,4 +290,59 @@ fn colour(point: &ParetoPoint) -> &'static str {
 
 fn stroke(colour: &'static str, width: f64, opacity: f64) -> Stroke {
     Stroke { colour, width, opacity }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Labels of so many settings at these places, each of which must have one that overlaps neither marks nor others.
+    fn check(marks: &[Vec2], names: &[String]) -> Labels {
+        let labels = Labels::of(marks, names, RIGHT[0]);
+        assert_eq!(labels.placed.len(), marks.len());
+        for (place, (name, label)) in labels.placed.iter().enumerate() {
+            let others = labels.placed[place + 1..].iter().map(|(_, other)| *other);
+            let marks = marks.iter().map(|&mark| Box::about(mark, Vec2::new(MARK, MARK)));
+            for other in others.chain(marks) {
+                assert!(!label.overlaps(&other), "{name}: {label:?} and {other:?}");
+            }
+        }
+        labels
+    }
+
+    fn names(count: usize) -> Vec<String> {
+        (0..count)
+            .map(|place| format!("timeout {place} s, φ-accrual"))
+            .collect()
+    }
+
+    #[test]
+    fn forty_labels_overlap_nothing_also_where_all_settings_are_at_one_place() {
+        let spread: Vec<Vec2> = (0..40)
+            .map(|i| {
+                Vec2::new(
+                    LEFT + 30.0 + f64::from(i * 197 % 500),
+                    TOP + 20.0 + f64::from(i * 131 % 360),
+                )
+            })
+            .collect();
+        check(&spread, &names(40));
+        let heap = vec![Vec2::new(LEFT + 5.0, TOP + UP - 10.0); 40];
+        assert_eq!(check(&heap, &names(40)).list.len(), 40);
+        let column: Vec<Vec2> = (0..40)
+            .map(|i| Vec2::new(LEFT + 3.0, TOP + f64::from(i) * 2.0))
+            .collect();
+        check(&column, &names(40));
+    }
+
+    #[test]
+    fn a_few_settings_have_their_names_beside_them() {
+        let marks = [
+            Vec2::new(200.0, 200.0),
+            Vec2::new(206.0, 203.0),
+            Vec2::new(640.0, 300.0),
+        ];
+        let labels = check(&marks, &names(3));
+        assert!(labels.list.is_empty() && labels.placed[1].0 == "timeout 1 s, φ-accrual");
+    }
 }

@@ -2,44 +2,66 @@
 
 use svg::Document;
 
-use super::canvas::Canvas;
+use super::canvas::{ARENA_PIXELS, Canvas};
 use super::style::{self, Marker, Shape, Stroke, TARGET};
 use super::{Scene, obstacles, subtitle};
 use crate::geometry::Vec2;
 use crate::metrics::TrialRecord;
 
-/// Places nearer than this to the last one drawn are left out, metres: less than a line's width.
-const RESOLUTION: f64 = 0.01;
+/// Places nearer than this to the last one drawn are left out, pixels: less than a line's width.
+const RESOLUTION: f64 = 0.7;
+/// Widest and narrowest paths, pixels.
+const WIDEST: f64 = 1.4;
+const NARROWEST: f64 = 0.7;
+/// Share of the arena that paths may cover with ink; of what is longer only the end is drawn.
+const INK: f64 = 0.3;
+/// Paths fade towards their beginning, in so many steps, from and to these opacities.
+const STEPS: usize = 5;
+const OPACITY: [f64; 2] = [0.15, 0.75];
 
-/// Draws paths by the robots' roles at the end, from a ring where they began to their mark where they ended.
+/// Draws paths by the robots' roles at the end, from a ring where they began to their mark where they ended: thinner, the more robots there
+/// are, fading towards the beginning, and, where that would still cover the arena, without it.
 pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
     let size = Vec2::new(scene.arena.size.0.get(), scene.arena.size.1.get());
-    let mut canvas = Canvas::new(size, &scene.name, &format!("paths of {}", subtitle(record)));
+    let pixel = size.max() / ARENA_PIXELS;
+    let crowd = (20.0 / record.robots.len().max(1) as f64).sqrt().min(1.0);
+    let width = (WIDEST * crowd).max(NARROWEST);
+    let paths: Vec<Path> = (0..record.robots.len())
+        .map(|robot| path(record, robot, RESOLUTION * pixel))
+        .collect();
+    let since = since(&paths, INK * size.x * size.y / (width * pixel));
+    let cut = if since > 0.0 {
+        format!(", from {since:.0} s on")
+    } else {
+        String::new()
+    };
+    let mut canvas = Canvas::new(size, &scene.name, &format!("paths of {}{cut}", subtitle(record)));
     obstacles(&mut canvas, &scene.arena.obstacles);
-    let paths: Vec<_> = (0..record.robots.len()).map(|robot| path(record, robot)).collect();
-    for (robot, path) in record.robots.iter().zip(&paths) {
-        let colour = style::role(scene.role(robot.role), robot.role.into()).colour;
-        canvas.path(
-            path,
-            Stroke {
-                colour,
-                width: 1.3,
-                opacity: 0.6,
-            },
-        );
+    let length = record.simulated.as_secs() - since;
+    for step in 0..STEPS {
+        let part = |number: usize| since + length * number as f64 / STEPS as f64;
+        let [faint, clear] = OPACITY;
+        let opacity = faint + (clear - faint) * step as f64 / (STEPS - 1) as f64;
+        for (robot, path) in record.robots.iter().zip(&paths) {
+            let colour = style::role(scene.role(robot.role), robot.role.into()).colour;
+            let stretch = stretch(path, part(step), part(step + 1));
+            if stretch.len() > 1 {
+                let opacity = (opacity * 100.0).round() / 100.0;
+                canvas.path(&stretch, Stroke { colour, width, opacity });
+            }
+        }
     }
     scene.targets.iter().for_each(|&target| canvas.mark(target, TARGET));
-    paths
-        .iter()
-        .filter_map(|path| path.first())
-        .for_each(|&start| canvas.mark(start, START));
-    for robot in &record.robots {
-        canvas.mark(
-            robot.pose.position,
-            style::role(scene.role(robot.role), robot.role.into()),
-        );
+    if since <= 0.0 {
+        let starts = paths.iter().filter_map(|path| path.first());
+        starts.for_each(|&(_, start)| canvas.mark(start, START));
     }
-    legend(&mut canvas, scene, record);
+    for robot in &record.robots {
+        let look = style::role(scene.role(robot.role), robot.role.into());
+        let size = look.size * crowd.max(0.6);
+        canvas.mark(robot.pose.position, Marker { size, ..look });
+    }
+    legend(&mut canvas, scene, record, since <= 0.0);
     canvas.finish()
 }
 
@@ -49,8 +71,10 @@ const START: Marker = Marker {
     size: 2.0,
 };
 
-fn legend(canvas: &mut Canvas, scene: &Scene, record: &TrialRecord) {
-    canvas.legend_mark(START, "start");
+fn legend(canvas: &mut Canvas, scene: &Scene, record: &TrialRecord, with_start: bool) {
+    if with_start {
+        canvas.legend_mark(START, "start");
+    }
     for (number, name) in scene.roles.iter().enumerate() {
         if record.robots.iter().any(|robot| usize::from(robot.role) == number) {
             canvas.legend_mark(style::role(name, number), &format!("end, as {name}"));
@@ -67,15 +91,83 @@ fn legend(canvas: &mut Canvas, scene: &Scene, record: &TrialRecord) {
     }
 }
 
-/// The places where a robot was sampled, and where it ended.
-fn path(record: &TrialRecord, robot: usize) -> Vec<Vec2> {
-    let sampled = record.trajectories.iter().filter_map(|(_, places)| places.get(robot));
-    let places = sampled.map(|[x, y]| Vec2::new(f64::from(*x), f64::from(*y)));
-    let mut path: Vec<Vec2> = Vec::new();
-    for place in places.chain([record.robots[robot].pose.position]) {
-        if path.last().is_none_or(|last| (place - last).norm() >= RESOLUTION) {
-            path.push(place);
+/// Where a robot was, and when, seconds.
+type Path = Vec<(f64, Vec2)>;
+
+/// The places where a robot was sampled, and where it ended, those closer together than `resolution` left out.
+fn path(record: &TrialRecord, robot: usize, resolution: f64) -> Path {
+    let sampled = record
+        .trajectories
+        .iter()
+        .filter_map(|(at, places)| Some((at.as_secs(), places.get(robot)?)));
+    let places = sampled.map(|(at, [x, y])| (at, Vec2::new(f64::from(*x), f64::from(*y))));
+    let end = (record.simulated.as_secs(), record.robots[robot].pose.position);
+    let mut path = Path::new();
+    for (at, place) in places.chain([end]) {
+        if path.last().is_none_or(|(_, last)| (place - last).norm() >= resolution) {
+            path.push((at, place));
         }
     }
     path
+}
+
+/// The time from which on all paths together are no longer than `most` metres; 0 if they are none at all.
+fn since(paths: &[Path], most: f64) -> f64 {
+    let legs = paths.iter().flat_map(|path| path.windows(2));
+    let mut legs: Vec<(f64, f64)> = legs.map(|leg| (leg[1].0, (leg[1].1 - leg[0].1).norm())).collect();
+    legs.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut length = 0.0;
+    let beyond = legs.into_iter().find(|(_, leg)| {
+        length += leg;
+        length > most
+    });
+    beyond.map_or(0.0, |(at, _)| at)
+}
+
+/// The part of a path between two times, from where it was when that began.
+fn stretch(path: &Path, from: f64, until: f64) -> Vec<Vec2> {
+    let first = path.partition_point(|(at, _)| *at < from).saturating_sub(1);
+    let last = path.partition_point(|(at, _)| *at <= until);
+    let inside = path.get(first..last).unwrap_or_default();
+    inside.iter().map(|(_, place)| *place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn walk(legs: u32) -> Path {
+        (0..=legs)
+            .map(|leg| (f64::from(leg), Vec2::new(f64::from(leg), 0.0)))
+            .collect()
+    }
+
+    #[test]
+    fn of_paths_that_would_cover_the_arena_only_the_end_is_drawn() {
+        // A hundred robots, a metre a second for 50 s: 5,000 m. Of 1,200 m the last twelve seconds are left.
+        let paths = vec![walk(50); 100];
+        assert_eq!(since(&paths, 6_000.0), 0.0);
+        let since = since(&paths, 1_200.0);
+        assert!((37.0..=39.0).contains(&since), "{since}");
+        let drawn: f64 = paths
+            .iter()
+            .map(|path| stretch(path, since, 50.0).len() as f64 - 1.0)
+            .sum();
+        assert!(drawn <= 1_300.0, "{drawn} m");
+    }
+
+    #[test]
+    fn stretches_of_a_path_join_where_one_ends_and_the_next_begins() {
+        let path = walk(10);
+        let [first, second] = [stretch(&path, 0.0, 4.5), stretch(&path, 4.5, 10.0)];
+        assert_eq!(
+            (first.first(), first.last()),
+            (Some(&Vec2::new(0.0, 0.0)), Some(&Vec2::new(4.0, 0.0)))
+        );
+        assert_eq!(
+            (second.first(), second.last()),
+            (Some(&Vec2::new(4.0, 0.0)), Some(&Vec2::new(10.0, 0.0)))
+        );
+        assert!(stretch(&Path::new(), 0.0, 1.0).is_empty());
+    }
 }

@@ -1,16 +1,22 @@
 //! Settings compared: what `comparison.json` holds and the report of a study shows. Everything follows from what each trial tells of
 //! each figure, and depends on no machine. Keys and their order are stable.
 
+mod contrasts;
+mod effect;
+mod family;
 mod pair;
 mod setting;
 
-pub use pair::{Gain, Pair, Plan, Tests, Verdict};
+pub use contrasts::{Contrasts, Grid, Levels, TooFew};
+pub use effect::{Dependence, Effect, Interaction, LevelMean};
+pub use family::{Family, Verdict};
+pub use pair::{Gain, Pair, Plan, Tests};
 pub use setting::{Estimated, Setting, Survival};
 
 use serde::{Deserialize, Serialize};
 
 use super::figures::{Figure, Sample};
-use super::statistics::{Resamples, holm};
+use super::statistics::Resamples;
 use super::summary::Named;
 
 /// Below this, a p-value adjusted for the family shows a difference.
@@ -41,8 +47,16 @@ pub struct Comparison {
     pub relevant: f64,
     /// The settings, in the order of the study.
     pub settings: Vec<Setting>,
-    /// The differences, figure by figure. All of them are one family, over which p-values are adjusted.
+    /// The differences between settings, figure by figure. In a full design of several factors only those against the reference.
     pub pairs: Vec<Pair>,
+    /// In a full design of several factors: the mean of each figure over every level.
+    pub level_means: Vec<LevelMean>,
+    /// In a full design of several factors: what levels do, averaged over the other factors.
+    pub effects: Vec<Effect>,
+    /// In a full design of several factors: whether what one factor does depends on another.
+    pub interactions: Vec<Interaction>,
+    /// The tests over which p-values are adjusted: all of pairs, effects and interactions that can show something.
+    pub family: Family,
     /// Which settings no other beats in two figures at once, if the study asks.
     pub pareto: Option<Pareto>,
     /// When trials stopped being added, if they were.
@@ -143,6 +157,13 @@ impl Comparison {
         let settings: Vec<Setting> = trials.iter().map(|trials| Setting::of(design, trials)).collect();
         let key = |&figure: &usize| design.figures[figure].key.clone();
         let pareto = design.pareto.map(|axes| Pareto::of(design, axes, &settings));
+        let family::Tests {
+            pairs,
+            means,
+            effects,
+            interactions,
+            family,
+        } = family::Tests::of(design, &trials);
         Self {
             study: design.study.clone(),
             question: design.question.clone(),
@@ -154,7 +175,11 @@ impl Comparison {
             compared: design.compared.iter().map(key).collect(),
             reference: design.reference.map(|reference| trials[reference].name.clone()),
             relevant: design.relevant,
-            pairs: pairs(design, &trials),
+            pairs,
+            level_means: means,
+            effects,
+            interactions,
+            family,
             settings,
             pareto,
             stopping,
@@ -173,40 +198,22 @@ impl Comparison {
         self.settings.iter().find(|setting| setting.name == name)
     }
 
+    /// What levels do to a figure.
+    pub fn effects_in<'a>(&'a self, key: &'a str) -> impl Iterator<Item = &'a Effect> {
+        self.effects.iter().filter(move |effect| effect.figure == key)
+    }
+
+    /// Whether what one factor does to a figure depends on another.
+    pub fn interactions_in<'a>(&'a self, key: &'a str) -> impl Iterator<Item = &'a Interaction> {
+        self.interactions
+            .iter()
+            .filter(move |interaction| interaction.figure == key)
+    }
+
     /// The differences in a figure.
     pub fn pairs_in<'a>(&'a self, key: &'a str) -> impl Iterator<Item = &'a Pair> {
         self.pairs.iter().filter(move |pair| pair.figure == key)
     }
-}
-
-/// All differences that the design asks for, their p-values adjusted as one family.
-fn pairs(design: &Design, trials: &[Trials]) -> Vec<Pair> {
-    let settings = 0..trials.len();
-    let held: Vec<(usize, usize)> = match design.reference {
-        Some(reference) => settings
-            .filter(|&it| it != reference)
-            .map(|it| (reference, it))
-            .collect(),
-        None => settings
-            .clone()
-            .flat_map(|a| (a + 1..trials.len()).map(move |b| (a, b)))
-            .collect(),
-    };
-    let all = design
-        .compared
-        .iter()
-        .flat_map(|figure| held.iter().map(move |held| (*figure, *held)));
-    let all: Vec<_> = all.collect();
-    let alpha = SIGNIFICANT / all.len().max(1) as f64;
-    let mut pairs: Vec<Pair> = all
-        .into_iter()
-        .map(|(figure, (a, b))| Pair::of(design, figure, [&trials[a], &trials[b]], alpha))
-        .collect();
-    let adjusted = holm(&pairs.iter().map(|pair| pair.p).collect::<Vec<_>>());
-    for (pair, p) in pairs.iter_mut().zip(adjusted) {
-        pair.judge(p, design);
-    }
-    pairs
 }
 
 /// Restricts what was cut off, in any setting, to the shortest time that a trial was watched in vain: up to there every trial has a
@@ -255,7 +262,7 @@ impl Pareto {
         let beaten = |place: &[f64; 2]| {
             places.iter().any(|(_, other)| {
                 let better = [x, y].map(|figure| figure.better);
-                let ahead = [0, 1].map(|axis| pair::gain_of(better[axis], other[axis] - place[axis]));
+                let ahead = [0, 1].map(|axis| pair::gain_of(better[axis], apart(other[axis], place[axis])));
                 ahead.iter().all(|ahead| *ahead >= 0.0) && ahead.iter().any(|ahead| *ahead > 0.0)
             })
         };
@@ -272,6 +279,17 @@ impl Pareto {
                 })
                 .collect(),
         }
+    }
+}
+
+/// How much `value` is above `other`; nothing where they differ by rounding alone.
+#[must_use]
+pub fn apart(value: f64, other: f64) -> f64 {
+    let difference = value - other;
+    if difference.abs() <= 1e-12 * value.abs().max(other.abs()) {
+        0.0
+    } else {
+        difference
     }
 }
 

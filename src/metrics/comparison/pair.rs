@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::setting::observations;
-use super::{Design, SIGNIFICANT, Trials};
+use super::{Design, Trials, Verdict};
 use crate::metrics::figures::{Better, COMPLETION, Sample};
 use crate::metrics::statistics::{
-    Estimate, POWER, Part, Resamples, cliffs_delta, log_rank, mann_whitney, paired_permutation, ratio_of_sums,
-    trials_needed, wilcoxon,
+    Estimate, POWER, Part, Resamples, Tested, cliffs_delta, least_of_ranks, log_rank, mann_whitney, paired_permutation,
+    ratio_of_sums, trials_needed, wilcoxon,
 };
 
 /// How a setting differs from another in one figure.
@@ -81,20 +81,6 @@ pub struct Plan {
     pub trials: u64,
 }
 
-/// What to make of a difference.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// The setting is better than the other.
-    Better,
-    /// It is worse.
-    Worse,
-    /// The trials show no difference, which does not mean that there is none.
-    NoDetectableDifference,
-    /// One of the two has no value of the figure.
-    NotComparable,
-}
-
 /// How far a change takes a figure the better way.
 pub(super) fn gain_of(better: Better, change: f64) -> f64 {
     match better {
@@ -104,8 +90,15 @@ pub(super) fn gain_of(better: Better, change: f64) -> f64 {
 }
 
 impl Pair {
-    /// Holds the second of two settings against the first, by one figure, in a family tested at level `alpha` each.
-    pub(super) fn of(design: &Design, figure: usize, [against, setting]: [&Trials; 2], alpha: f64) -> Self {
+    /// Holds the second of two settings against the first, by one figure, in a family of so many tests at level `alpha` each. Not judged yet;
+    /// with what its test found.
+    pub(super) fn of(
+        design: &Design,
+        figure: usize,
+        [against, setting]: [&Trials; 2],
+        alpha: f64,
+        family: usize,
+    ) -> (Self, Option<Tested>) {
         let paired = against.seed == setting.seed;
         let mut samples = [&against.samples[figure][..], &setting.samples[figure][..]];
         if paired {
@@ -117,14 +110,18 @@ impl Pair {
         let resamples = Resamples::of(&if paired { vec![a.len()] } else { vec![a.len(), b.len()] });
         let base = ratio_of_sums(parts[0].iter().copied());
         let difference = difference(&parts, &resamples);
-        let tests = Tests::of(design.figures[figure].key == COMPLETION, paired, samples, &parts);
+        let permuted = paired
+            .then(|| paired_permutation(&[parts.each_ref().map(Vec::as_slice)], family))
+            .flatten();
+        let tests = Tests::of(design.figures[figure].key == COMPLETION, permuted, paired, samples);
+        let tested = if paired { permuted } else { tests.ranks(samples) };
         let gain = paired.then(|| Gain::of(&parts)).flatten();
         let deviation = if paired {
             gain.as_ref().map(|gain| gain.paired_variance.sqrt())
         } else {
             Gain::of(&parts).map(|gain| gain.independent_variance.sqrt())
         };
-        Self {
+        let pair = Self {
             figure: design.figures[figure].key.clone(),
             setting: setting.name.clone(),
             against: against.name.clone(),
@@ -135,30 +132,23 @@ impl Pair {
                 .filter(|share| share.is_finite()),
             difference,
             cliffs_delta: delta(samples, &resamples),
-            p: if paired { tests.permutation } else { tests.mann_whitney },
+            p: tested.map(|tested| tested.p),
             p_adjusted: None,
             tests,
             gain,
             plan: deviation.and_then(|deviation| Plan::of((design.relevant * base).abs(), deviation, alpha)),
             verdict: Verdict::NotComparable,
             words: String::new(),
-        }
+        };
+        (pair, tested)
     }
+}
 
-    /// Judges the difference by its adjusted p-value.
-    pub(super) fn judge(&mut self, p_adjusted: Option<f64>, design: &Design) {
-        self.p_adjusted = p_adjusted;
-        let figure = design.figures.iter().find(|figure| figure.key == self.figure);
-        let (Some(p), Some(difference), Some(figure)) = (p_adjusted, self.difference.value, figure) else {
-            return;
-        };
-        self.verdict = match gain_of(figure.better, difference) {
-            _ if p >= SIGNIFICANT => Verdict::NoDetectableDifference,
-            gain if gain > 0.0 => Verdict::Better,
-            gain if gain < 0.0 => Verdict::Worse,
-            _ => Verdict::NoDetectableDifference,
-        };
-    }
+/// Whether two settings differ in any trial's figure.
+pub(super) fn differ(trials: &[Trials], figure: usize, [a, b]: [usize; 2]) -> bool {
+    let [a, b] = [&trials[a], &trials[b]].map(|trials| &trials.samples[figure]);
+    let same = |(a, b): (&Sample, &Sample)| a.part.iter().zip(b.part).all(|(a, b)| super::apart(*a, b) == 0.0);
+    a.len() != b.len() || !a.iter().zip(b).all(same)
 }
 
 /// The choice of trials in each of two groups, from the resample of one group of pairs or of two groups.
@@ -198,8 +188,7 @@ fn delta(samples: [&[Sample]; 2], resamples: &Resamples) -> Estimate {
 }
 
 impl Tests {
-    fn of(may_be_cut_off: bool, paired: bool, samples: [&[Sample]; 2], parts: &[Vec<Part>; 2]) -> Self {
-        let values = |samples: &[Sample]| samples.iter().filter_map(Sample::value).collect::<Vec<f64>>();
+    fn of(may_be_cut_off: bool, permuted: Option<Tested>, paired: bool, samples: [&[Sample]; 2]) -> Self {
         let pairs = samples[0].iter().zip(samples[1]);
         let differences = || {
             pairs
@@ -207,7 +196,7 @@ impl Tests {
                 .collect::<Vec<f64>>()
         };
         Self {
-            permutation: paired.then(|| paired_permutation(&parts[0], &parts[1])).flatten(),
+            permutation: permuted.map(|tested| tested.p),
             wilcoxon: paired.then(|| wilcoxon(&differences())).flatten(),
             mann_whitney: (!paired)
                 .then(|| mann_whitney(&values(samples[0]), &values(samples[1])))
@@ -217,6 +206,20 @@ impl Tests {
                 .flatten(),
         }
     }
+
+    /// What Mann and Whitney's test found. Where all values are the same it finds nothing, and could not have.
+    fn ranks(&self, samples: [&[Sample]; 2]) -> Option<Tested> {
+        let [a, b] = samples.map(values);
+        let alike = || (!a.is_empty() && !b.is_empty()).then_some(Tested { p: 1.0, least: 1.0 });
+        match (self.mann_whitney, least_of_ranks(&a, &b)) {
+            (Some(p), Some(least)) => Some(Tested { p, least }),
+            _ => alike(),
+        }
+    }
+}
+
+fn values(samples: &[Sample]) -> Vec<f64> {
+    samples.iter().filter_map(Sample::value).collect()
 }
 
 impl Gain {

@@ -20,6 +20,26 @@ pub fn holm(p_values: &[Option<f64>]) -> Vec<Option<f64>> {
     adjusted
 }
 
+/// Which tests of a family can show anything at level `alpha`, by the least p-value that each could have given (Tarone, 1990): a test
+/// that cannot be significant whatever comes out is no chance to err, and leaves the others their level. The least p-value does not depend on
+/// which way the trials came out, so that to choose by it costs nothing. A test without one counts for nothing.
+#[must_use]
+pub fn testable(least: &[Option<f64>], alpha: f64) -> Vec<bool> {
+    let able = |size: usize| move |least: &Option<f64>| least.is_some_and(|least| least * (size as f64) < alpha);
+    let size = (1..=least.len()).find(|&size| least.iter().filter(|least| able(size)(least)).count() <= size);
+    least
+        .iter()
+        .map(|least| size.is_some_and(|size| able(size)(least)))
+        .collect()
+}
+
+/// The fewest trials of which one of so many tests can show anything at level `alpha` after Holm's adjustment, where `least` is the least
+/// p-value that so many trials could give. `None` if a thousand do not suffice.
+#[must_use]
+pub fn fewest_trials(tests: usize, alpha: f64, least: impl Fn(u64) -> f64) -> Option<u64> {
+    (2..=1000).find(|&trials| least(trials) * (tests as f64) < alpha)
+}
+
 /// Probability with which a planned number of trials finds a difference that is there.
 pub const POWER: f64 = 0.8;
 
@@ -48,6 +68,36 @@ mod tests {
             assert!((found.unwrap() - expected).abs() < 1e-12, "{adjusted:?}");
         }
         assert_eq!(holm(&[None, Some(0.5), Some(0.9)]), [None, Some(1.0), Some(1.0)]);
+    }
+
+    #[test]
+    fn tests_that_cannot_be_significant_leave_the_others_their_level() {
+        // Tarone (1990): of 30 tests of which 20 have a least p-value of 1, ten are left; those of 0.0078 cannot reach 0.05 over 10.
+        let mut least = vec![Some(1.0); 20];
+        least.extend(vec![Some(2.0 / 2_f64.powi(9)); 10]);
+        assert_eq!(testable(&least, 0.05).iter().filter(|&&able| able).count(), 10);
+        least.extend(vec![Some(2.0 / 2_f64.powi(9)); 3]);
+        assert!(testable(&least, 0.05).iter().all(|able| !able), "13 · 2/2⁹ = 0.051");
+        // One of many trials keeps its level beside any number of those that have few.
+        least.push(Some(1e-4));
+        assert_eq!(testable(&least, 0.05).iter().filter(|&&able| able).count(), 1);
+        assert_eq!(testable(&[None, Some(0.01)], 0.05), [false, true]);
+    }
+
+    #[test]
+    fn a_family_ten_times_as_large_asks_for_three_or_four_trials_more() {
+        // 2/2ⁿ · m < 0.05: n > 1 + log2(20 m).
+        let least = super::super::least_of_pairs;
+        for (tests, trials) in [(1, 6), (3, 7), (10, 9), (30, 11), (66, 12), (300, 14)] {
+            assert_eq!(fewest_trials(tests, 0.05, least), Some(trials), "{tests}");
+            assert!(least(trials - 1) * tests as f64 >= 0.05);
+        }
+        // 2/C(2n, n) · 10 < 0.05: C(10, 5) = 252, C(12, 6) = 924.
+        assert_eq!(
+            fewest_trials(10, 0.05, |n| super::super::least_of_groups(n, n)),
+            Some(6)
+        );
+        assert_eq!(fewest_trials(1, 0.05, |_| 0.5), None);
     }
 
     #[test]

@@ -11,10 +11,10 @@ mod spread;
 mod survival;
 
 pub use bootstrap::Resamples;
-pub use family::{POWER, holm, trials_needed};
+pub use family::{POWER, fewest_trials, holm, testable, trials_needed};
 pub use location::{mean, median, proportion, ratio, share};
-pub use permutation::{Part, paired_permutation, ratio_of_sums};
-pub use ranks::{cliffs_delta, mann_whitney, wilcoxon};
+pub use permutation::{Part, Tested, least_of_pairs, paired_permutation, ratio_of_sums, sign_permutation};
+pub use ranks::{cliffs_delta, least_of_groups, least_of_ranks, mann_whitney, wilcoxon};
 pub use spread::{gini, quantile};
 pub use survival::{Observation, Step, log_rank, median_survival, survival_curve};
 

@@ -29,6 +29,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
             worker_role: Role(1),
         }),
         rumors: 0,
+        completion: crate::protocol::CompletionConfig::default(),
         status_memory: Span::from_secs(8.0),
         patience: Span::from_secs(4.0),
         trace: None,

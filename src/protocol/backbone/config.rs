@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::{Vec2, unit};
+use crate::protocol::CompletionConfig;
 use crate::quantity::{Finite, NonNegative, Positive, Probability};
 
 use super::mission::relays_needed;
@@ -20,6 +21,10 @@ const MOST_ROBOTS: u32 = 1 << 16;
 pub struct BackboneConfig {
     /// Where the workers go and how many links each needs.
     pub targets: TargetsConfig,
+    /// When the mission is complete: `Reached`, `Held(seconds)` or `EachVisited`; by default held for 10 s, or for `metrics.hold`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "CompletionConfig")]
+    pub completion: Option<CompletionConfig>,
     /// d_s, the safe communication distance: length of the virtual springs, metres.
     #[serde(default = "safe_distance")]
     pub safe_distance: Positive,
@@ -141,8 +146,8 @@ pub struct HealingConfig {
     /// beyond the break: as long as these may need to come to it.
     pub patience: Positive,
     /// Relays that each chain gets beyond the fewest once the root has learnt that a robot was lost, at most, and fewer
-    /// as robots run out; 0 for none. The outermost follows the worker closely, so that a lost worker or relay is replaced within seconds.
-    /// The paper, whose aim is fewest robots, has no reserve; without failures there is none here either.
+    /// as robots run out. The outermost follows the worker closely, so that a lost worker or relay is replaced within seconds.
+    /// 0, the default, for none: the paper's aim is fewest robots. Without failures there is none in any case.
     pub reserve: u8,
 }
 
@@ -150,7 +155,7 @@ impl Default for HealingConfig {
     fn default() -> Self {
         Self {
             patience: Positive::new(60.0),
-            reserve: 2,
+            reserve: 0,
         }
     }
 }

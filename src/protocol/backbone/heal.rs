@@ -7,9 +7,10 @@
 //! has one robot less, and waits to be asked. The root, which never moves, sends a free robot in its stead. So both ends
 //! take their half, and the robot that replaces the failed one comes in at the root's end.
 //!
-//! A hop takes about a minute at the paper's pace. So from the first lost robot on chains get relays in reserve (ours; the
-//! root orders them, `shortage.rs`): gaps are then shorter than a hop, and the outermost relay, which follows the worker
-//! closely, takes over from it within seconds. Without a failure there is no reserve, and chains have the fewest robots.
+//! A hop takes about a minute at the paper's pace. Where the scenario asks for it (`healing.reserve`, ours), chains get relays in
+//! reserve from the first lost robot on (the root orders them, `shortage.rs`): gaps are then shorter than a hop, and the outermost
+//! relay, which follows the worker closely, takes over from it within seconds. By default, and without a failure, chains have the
+//! fewest robots.
 
 use crate::engine::ActorId;
 use crate::geometry::Vec2;

@@ -1,7 +1,8 @@
 //! What every robot is given before the start: the targets, the root, the workers, and the settings in working units.
 
-use crate::engine::{ActorId, Span, Streams};
+use crate::engine::{ActorId, Streams};
 use crate::geometry::{Pose, Vec2, direction};
+use crate::protocol::control::{ControlConfig, Phases, Rhythm};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::{GossipConfig, Repetition, RetransmitConfig, TimeToLiveConfig, Turns};
 
@@ -140,6 +141,7 @@ pub struct Parameters {
     pub silence_steps: u64,
     pub detector: DetectorConfig,
     pub circumstances: Circumstances,
+    pub phases: Phases,
 }
 
 impl Mission {
@@ -234,15 +236,18 @@ pub fn relays_needed(distance: f64, threshold: f64, safe: f64) -> usize {
 }
 
 impl Parameters {
-    /// The settings of a scenario, for robots that wake every `control_period`, in a trial with these `streams`.
+    /// The settings of a scenario, for robots that wake as `control` says, in a trial with these `streams`.
     #[must_use]
     pub fn new(
         config: &BackboneConfig,
         gossip: &GossipConfig,
         (detector, circumstances): (&DetectorConfig, Circumstances),
-        control_period: Span,
+        control: &ControlConfig,
         streams: Streams,
     ) -> Self {
+        let control_period = control.period();
+        let phases = Phases::new(control.phase, streams);
+        let turns = |timing, rhythm| Turns::new(timing, rhythm, phases, streams);
         let steps = |seconds: f64| (seconds / control_period.as_secs()).ceil() as u64;
         let law = &config.motion;
         let strand_repetition = gossip.strand.repetition(control_period);
@@ -273,12 +278,12 @@ impl Parameters {
                 .max(REPETITIONS * request.longest()),
             shortage_patience: steps(config.shortage.patience.get()),
             visit: steps(config.shortage.visit.get()),
-            status_turns: Turns::new(gossip.status.timing(control_period), 0, streams),
+            status_turns: turns(gossip.status.timing(control_period), Rhythm::Status),
             status_repetition: gossip.status.repetition(control_period),
-            strand_turns: Turns::new(gossip.strand.timing(control_period), 2, streams),
+            strand_turns: turns(gossip.strand.timing(control_period), Rhythm::Strand),
             strand_repetition,
-            request_turns: Turns::new(request, 1, streams),
-            relay_turns: Turns::new(gossip.relay.timing(control_period), 4, streams),
+            request_turns: turns(request, Rhythm::Request),
+            relay_turns: turns(gossip.relay.timing(control_period), Rhythm::Relay),
             retransmit: gossip.relay.retransmit,
             strand_lifetime: match gossip.strand.time_to_live {
                 TimeToLiveConfig::Unlimited => u64::MAX,
@@ -290,6 +295,7 @@ impl Parameters {
             reserve: config.healing.reserve,
             detector: detector.clone(),
             circumstances,
+            phases,
         }
     }
 }
@@ -308,6 +314,7 @@ const REPETITIONS: u64 = 5;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Span;
 
     fn mission(links: u8, poses: &[(f64, f64)]) -> Mission {
         let config: BackboneConfig =
@@ -322,7 +329,7 @@ mod tests {
                     status_interval: Span::from_secs(0.1),
                 },
             ),
-            Span::from_secs(0.1),
+            &ControlConfig::default(),
             Streams::new(1, 0),
         );
         let poses: Vec<Pose> = poses

@@ -42,10 +42,11 @@ use sidestep::Sidestep;
 use view::{Knowledge, View};
 use worker::Worker;
 
+use super::control::{ControlConfig, Rhythm};
 use super::detector::{self, Circumstances, Detector, DetectorConfig};
 use super::gossip::{GossipConfig, Repeat};
 use super::{Input, Note, Output, Protocol, Reception, Topic, Wake};
-use crate::engine::{ActorId, SimTime, Span, Streams};
+use crate::engine::{ActorId, SimTime, Streams};
 use crate::geometry::{Pose, Vec2};
 
 /// One robot of the backbone.
@@ -64,7 +65,7 @@ pub struct Backbone {
 }
 
 /// What the robot last said, topic by topic, and what it passes on.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Said {
     status: Repeat<Status>,
     strands: Repeat<Vec<Message>>,
@@ -73,6 +74,21 @@ struct Said {
 }
 
 impl Said {
+    /// Nothing yet.
+    fn nothing(robot: ActorId, parameters: &Parameters) -> Self {
+        let Parameters {
+            status_repetition,
+            strand_repetition,
+            phases,
+            ..
+        } = *parameters;
+        Self {
+            status: Repeat::new(status_repetition, Rhythm::StatusRefresh, phases, robot),
+            strands: Repeat::new(strand_repetition, Rhythm::StrandRefresh, phases, robot),
+            order: Default::default(),
+        }
+    }
+
     /// Whether `order` is to be passed on once more, of at most `limit` times.
     fn passes_on(&mut self, order: Order, limit: u64) -> bool {
         if self.order.0 != order {
@@ -101,15 +117,15 @@ pub fn swarm(
     config: &BackboneConfig,
     gossip: &GossipConfig,
     detector: &DetectorConfig,
-    control_period: Span,
+    control: &ControlConfig,
     poses: &[Pose],
     streams: Streams,
 ) -> Vec<Backbone> {
     let circumstances = Circumstances {
         robots: poses.len(),
-        status_interval: gossip.status.longest_pause(control_period),
+        status_interval: gossip.status.longest_pause(control.period()),
     };
-    let parameters = Parameters::new(config, gossip, (detector, circumstances), control_period, streams);
+    let parameters = Parameters::new(config, gossip, (detector, circumstances), control, streams);
     let mission = Rc::new(Mission::new(config, parameters, poses));
     (0..poses.len() as u32)
         .map(|robot| Backbone::new(ActorId(robot), Rc::clone(&mission)))
@@ -125,13 +141,16 @@ impl Backbone {
         } else {
             Duty::Free
         };
+        let parameters = &mission.parameters;
+        let detector = Detector::new(&parameters.detector, parameters.circumstances, parameters.phases, id);
         Self {
+            said: Said::nothing(id, parameters),
             known: Knowledge {
                 id,
                 step: 0,
                 position: Vec2::zeros(),
                 neighbours: Neighbours::default(),
-                detector: Detector::new(&mission.parameters.detector, mission.parameters.circumstances, id),
+                detector,
                 mission,
                 order: Order::default(),
             },
@@ -140,7 +159,6 @@ impl Backbone {
             recruiter: Recruiter::default(),
             sidestep: Sidestep::default(),
             unread: Vec::new(),
-            said: Said::default(),
             told: Told::default(),
         }
     }

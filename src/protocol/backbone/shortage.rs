@@ -7,7 +7,7 @@
 //! robots do for one target alone it comes to what the conclusions say; where they do for more, several targets are held
 //! at once, and none is visited later for it.
 //!
-//! The root also orders the reserve (ours): relays beyond the fewest, from the first lost robot on.
+//! The root also orders the reserve, where the scenario has one (ours): relays beyond the fewest, from the first lost robot on.
 
 use std::cmp::Reverse;
 

@@ -67,10 +67,10 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// Whether it has its turn on a topic. Robots take turns where a message is not sent at every step.
+    /// Whether it has its turn on a topic.
     #[must_use]
     pub fn has_turn(&self, turns: &Turns) -> bool {
-        turns.is_due(self.id, self.step + u64::from(self.id.0))
+        turns.is_due(self.id, self.step)
     }
 
     /// The settings.

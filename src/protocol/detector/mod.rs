@@ -24,6 +24,7 @@ use std::rc::Rc;
 
 use rand_philox::Philox;
 
+use super::control::Phases;
 use super::{Output, Reception, TimerId};
 use crate::engine::{ActorId, SimTime};
 use nfd_s::NfdS;
@@ -99,15 +100,15 @@ pub enum Detector {
 }
 
 impl Detector {
-    /// The detector of robot `id`, which has heard nobody yet.
+    /// The detector of robot `id`, which has heard nobody yet and begins what it repeats at the robot's phase.
     #[must_use]
-    pub fn new(config: &DetectorConfig, circumstances: Circumstances, id: ActorId) -> Self {
+    pub fn new(config: &DetectorConfig, circumstances: Circumstances, phases: Phases, id: ActorId) -> Self {
         let silence = config.usual_silence(circumstances);
         match config {
             DetectorConfig::Timeout(_) => Self::Timeout(Watch::new(Timeout(silence))),
             DetectorConfig::NfdS(_) => Self::NfdS(Watch::new(NfdS { silence })),
             DetectorConfig::PhiAccrual(config) => Self::PhiAccrual(Watch::new(Phi::new(config))),
-            DetectorConfig::Swim(config) => Self::Swim(Box::new(Swim::new(config, circumstances, id))),
+            DetectorConfig::Swim(config) => Self::Swim(Box::new(Swim::new(config, circumstances, phases, id))),
         }
     }
 
@@ -174,7 +175,8 @@ impl Detector {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::Span;
+    use crate::engine::{Span, Streams};
+    use crate::protocol::control::PhaseConfig;
     use crate::protocol::{Evidence, Frame, MessageSize, Note};
     use crate::quantity::Positive;
 
@@ -206,6 +208,7 @@ mod tests {
         Detector::new(
             &DetectorConfig::Timeout(Positive::new(TIMEOUT_S)),
             CIRCUMSTANCES,
+            Phases::new(PhaseConfig::Random, Streams::new(1, 0)),
             ActorId(0),
         )
     }

@@ -1,6 +1,7 @@
 //! What is sent when a topic has its turn: what there is to say, or only what has changed.
 
-use crate::engine::Span;
+use crate::engine::{ActorId, Span};
+use crate::protocol::control::{Phases, Rhythm};
 
 use super::config::SendConfig;
 use super::turns::Timing;
@@ -51,14 +52,20 @@ pub struct Repeat<M> {
     left: u32,
     /// Turns since it was said.
     silent: u64,
+    /// Turns that the first silence is shorter by: all robots have something new to say at the start, and are not to say it again
+    /// all at once.
+    head_start: u64,
 }
 
-impl<M> Default for Repeat<M> {
-    fn default() -> Self {
+impl<M> Repeat<M> {
+    /// Nothing was said yet by `robot`, which refreshes what it says in this `rhythm`.
+    #[must_use]
+    pub fn new(repetition: Repetition, rhythm: Rhythm, phases: Phases, robot: ActorId) -> Self {
         Self {
             last: None,
             left: 0,
             silent: 0,
+            head_start: phases.of(robot, rhythm, repetition.refresh),
         }
     }
 }
@@ -81,6 +88,9 @@ impl<M: PartialEq> Repeat<M> {
         if due {
             self.left = self.left.saturating_sub(1);
             self.silent = 0;
+            if self.left == 0 {
+                self.silent = std::mem::take(&mut self.head_start);
+            }
         }
         due
     }
@@ -89,6 +99,8 @@ impl<M: PartialEq> Repeat<M> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Streams;
+    use crate::protocol::control::PhaseConfig;
     use crate::quantity::{Positive, Probability};
     use proptest::prelude::*;
 
@@ -103,8 +115,13 @@ mod tests {
         Repetition::new(send, timing, STEP)
     }
 
+    fn repeat(repetition: Repetition, phase: PhaseConfig, trial: u32) -> Repeat<char> {
+        let phases = Phases::new(phase, Streams::new(3, trial));
+        Repeat::new(repetition, Rhythm::StatusRefresh, phases, ActorId(5))
+    }
+
     fn sent(repetition: Repetition, said: &str) -> String {
-        let mut repeat = Repeat::default();
+        let mut repeat = repeat(repetition, PhaseConfig::Together, 0);
         let send = |word: char| if repeat.is_due(repetition, &word) { word } else { '.' };
         said.chars().map(send).collect()
     }
@@ -127,13 +144,30 @@ mod tests {
         assert_eq!(sent(repetition, "aaaaaaa"), "a..a..a", "a turn every 0.3 s");
     }
 
+    /// Refreshed every 5 turns: over 500 trials 100 begin at each, σ 8.9; four of it.
+    #[test]
+    fn at_random_phases_the_first_silence_is_cut_short_anywhere_and_later_ones_are_whole() {
+        let repetition = on_change(0.1, 0.5, 2);
+        let mut counts = [0_u32; 5];
+        for trial in 0..500 {
+            let mut repeat = repeat(repetition, PhaseConfig::Random, trial);
+            let due: Vec<u64> = (0..20).filter(|_| repeat.is_due(repetition, &'a')).collect();
+            let rhythm: Vec<u64> = due.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            assert_eq!(due[..2], [0, 1], "what is new is said at once, and as often as asked");
+            assert!(rhythm[2..].iter().all(|pause| *pause == 5), "{rhythm:?}");
+            counts[rhythm[1] as usize - 1] += 1;
+        }
+        assert!(counts.iter().all(|count| count.abs_diff(100) < 36), "{counts:?}");
+    }
+
     proptest! {
         #[test]
         fn no_pause_is_longer_than_stated_and_no_change_is_missed(
-            words in prop::collection::vec(0_u8..3, 1..60), max in 1_u32..8, times in 1_u32..4,
+            words in prop::collection::vec(prop::char::range('a', 'c'), 1..60), max in 1_u32..8, times in 1_u32..4,
+            trial in 0_u32..100,
         ) {
             let repetition = on_change(0.1, f64::from(max) / 10.0, times);
-            let mut repeat = Repeat::default();
+            let mut repeat = repeat(repetition, PhaseConfig::Random, trial);
             let mut heard = None;
             let mut pause = 0;
             for word in words {

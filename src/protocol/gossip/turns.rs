@@ -1,6 +1,8 @@
-//! When a topic has its turn: once in every interval, at a step that jitter may move within it.
+//! When a topic has its turn: once in every interval, at a step that jitter may move within it. Each robot's intervals begin at
+//! a phase of its own.
 
 use crate::engine::{ActorId, KeyedStreams, Purpose, Span, Streams};
+use crate::protocol::control::{Phases, Rhythm};
 use crate::quantity::{Positive, Probability};
 
 /// The step within an interval, by robot, topic and interval: one word each, so that settings compare under common
@@ -52,26 +54,29 @@ impl Timing {
 #[derive(Clone, Copy, Debug)]
 pub struct Turns {
     timing: Timing,
+    /// By which the topic's draws differ from those of others.
+    rhythm: Rhythm,
+    phases: Phases,
     jitter: KeyedStreams,
-    /// Number by which the topic's draws differ from those of others.
-    topic: u32,
 }
 
 impl Turns {
-    /// The turns of the topic with this number, in a trial with these `streams`.
+    /// The turns of a topic with this rhythm, in a trial with these `phases` and `streams`.
     #[must_use]
-    pub fn new(timing: Timing, topic: u32, streams: Streams) -> Self {
+    pub fn new(timing: Timing, rhythm: Rhythm, phases: Phases, streams: Streams) -> Self {
         Self {
             timing,
+            rhythm,
+            phases,
             jitter: streams.keyed(JITTER),
-            topic,
         }
     }
 
-    /// Whether `robot` has its turn at `step`.
+    /// Whether `robot` has its turn at its control step number `step`.
     #[must_use]
     pub fn is_due(&self, robot: ActorId, step: u64) -> bool {
         let Timing { every, places } = self.timing;
+        let step = step + self.phases.of(robot, self.rhythm, every);
         let place = step % every;
         place < places && place == self.place(robot, step / every)
     }
@@ -86,7 +91,7 @@ impl Turns {
         if !self.timing.is_jittered() {
             return 0;
         }
-        let [word, _] = self.jitter.first_two(robot.0, self.topic, interval as u32);
+        let [word, _] = self.jitter.first_two(robot.0, self.rhythm as u32, interval as u32);
         ((u128::from(word) * u128::from(self.timing.places)) >> 64) as u64
     }
 }
@@ -94,24 +99,54 @@ impl Turns {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::protocol::control::PhaseConfig;
     use proptest::prelude::*;
 
     const STEP: Span = Span::from_nanos(100_000_000);
 
+    fn topic(timing: Timing, phase: PhaseConfig, rhythm: Rhythm, trial: u32) -> Turns {
+        let streams = Streams::new(7, trial);
+        Turns::new(timing, rhythm, Phases::new(phase, streams), streams)
+    }
+
+    /// Turns of a robot where all begin together.
     fn turns(interval: f64, jitter: f64, robot: u32, steps: u64) -> Vec<u64> {
         let timing = Timing::new(Positive::new(interval), Probability::new(jitter), STEP);
-        let turns = Turns::new(timing, 0, Streams::new(7, 0));
+        let turns = topic(timing, PhaseConfig::Together, Rhythm::Status, 0);
         (0..steps).filter(|&step| turns.is_due(ActorId(robot), step)).collect()
     }
 
     #[test]
-    fn without_jitter_a_turn_comes_at_the_first_step_of_every_interval() {
+    fn without_jitter_and_together_a_turn_comes_at_the_first_step_of_every_interval() {
         assert_eq!(turns(0.1, 0.0, 3, 4), [0, 1, 2, 3]);
         assert_eq!(
             turns(0.25, 0.0, 3, 10),
             [0, 3, 6, 9],
             "rounded up to whole control periods"
         );
+    }
+
+    /// Intervals of 7 steps, 4,200 robots and trials: 600 begin at each step. Chi-square with 6 degrees of freedom, below 22.5
+    /// with probability 0.999. Two rhythms of a robot begin together in one of seven: 600, σ 22.7, within four of it.
+    #[test]
+    fn at_random_phases_a_topic_begins_anywhere_in_its_interval_by_robot_topic_and_trial() {
+        let timing = Timing::new(Positive::new(0.7), Probability::new(0.0), STEP);
+        let first = |rhythm, robot, trial| {
+            let turns = topic(timing, PhaseConfig::Random, rhythm, trial);
+            let due: Vec<u64> = (0..21).filter(|&step| turns.is_due(ActorId(robot), step)).collect();
+            assert_eq!((due.len(), due[1] - due[0], due[2] - due[1]), (3, 7, 7));
+            due[0]
+        };
+        let mut counts = [0_f64; 7];
+        let mut together = 0_u32;
+        for (robot, trial) in (0..100).flat_map(|robot| (0..42).map(move |trial| (robot, trial))) {
+            let status = first(Rhythm::Status, robot, trial);
+            counts[status as usize] += 1.0;
+            together += u32::from(status == first(Rhythm::Strand, robot, trial));
+        }
+        let chi_square: f64 = counts.iter().map(|count| (count - 600.0).powi(2) / 600.0).sum();
+        assert!(chi_square < 22.5, "{chi_square}: {counts:?}");
+        assert!(together.abs_diff(600) < 91, "{together}");
     }
 
     proptest! {
@@ -126,6 +161,20 @@ mod tests {
             prop_assert!(turns.iter().enumerate().all(|(number, step)| step / every == number as u64));
             prop_assert_eq!(turns.len(), 40);
             prop_assert!(turns.windows(2).all(|pair| pair[1] - pair[0] <= timing.longest()));
+        }
+
+        #[test]
+        fn no_pause_is_longer_than_stated_at_random_phases_either_the_one_before_the_first_turn_included(
+            every in 1_u64..20, jitter in 0.0..=1.0_f64, robot in 0_u32..50, trial in 0_u32..50,
+        ) {
+            let timing = Timing::new(Positive::new(every as f64 / 10.0), Probability::new(jitter), STEP);
+            let turns = topic(timing, PhaseConfig::Random, Rhythm::Relay, trial);
+            let mut last = None;
+            for step in (0..every * 40).filter(|&step| turns.is_due(ActorId(robot), step)) {
+                prop_assert!(step < last.map_or(timing.longest(), |last: u64| last + timing.longest() + 1));
+                last = Some(step);
+            }
+            prop_assert!(last >= Some(every * 38));
         }
     }
 
@@ -147,13 +196,13 @@ mod tests {
     #[test]
     fn robots_and_topics_are_moved_apart_from_each_other() {
         let timing = Timing::new(Positive::new(1.0), Probability::new(1.0), STEP);
-        let of = |topic, robot| {
-            let turns = Turns::new(timing, topic, Streams::new(7, 0));
+        let of = |rhythm, robot| {
+            let turns = topic(timing, PhaseConfig::Together, rhythm, 0);
             (0..200)
                 .filter(|&step| turns.is_due(ActorId(robot), step))
                 .collect::<Vec<u64>>()
         };
-        assert_ne!(of(0, 0), of(0, 1));
-        assert_ne!(of(0, 0), of(1, 0));
+        assert_ne!(of(Rhythm::Status, 0), of(Rhythm::Status, 1));
+        assert_ne!(of(Rhythm::Status, 0), of(Rhythm::Request, 0));
     }
 }

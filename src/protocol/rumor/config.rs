@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::protocol::CompletionConfig;
 use crate::protocol::gossip::{FanOutConfig, RelayConfig, RetransmitConfig};
 
 /// Most rumours of a trial: a request has a bit for each.
@@ -23,6 +24,11 @@ pub struct RumorConfig {
     /// Length of a rumour in bytes, its number and the address not included.
     #[schemars(range(max = 60_000))]
     pub size: u16,
+    /// When the mission is complete: `Reached` as soon as all live robots know all rumours, `Held(seconds)` or `EachVisited`; by default
+    /// held for 10 s, or for `metrics.hold`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "CompletionConfig")]
+    pub completion: Option<CompletionConfig>,
 }
 
 impl Default for RumorConfig {
@@ -32,6 +38,7 @@ impl Default for RumorConfig {
             rounds: RoundsConfig::Periodic,
             sources: SourcesConfig::Random(1),
             size: 32,
+            completion: None,
         }
     }
 }

@@ -18,6 +18,7 @@ use std::rc::Rc;
 pub use config::{Mode, RoundsConfig, RumorConfig, SourcesConfig};
 pub use message::{Message, RumorCodec};
 
+use super::control::{ControlConfig, Phases, Rhythm};
 use super::gossip::{FanOutConfig, GossipConfig, Turns};
 use super::wander::{Ground, Wander};
 use super::{Input, Note, Output, Protocol, Reception, Role, TimerId, Topic, Wake};
@@ -73,12 +74,13 @@ pub struct Rumor {
 pub fn swarm(
     config: &RumorConfig,
     gossip: &GossipConfig,
-    control_period: Span,
+    control: &ControlConfig,
     robots: u32,
     ground: Ground,
     streams: Streams,
 ) -> Vec<Rumor> {
     let relay = &gossip.relay;
+    let phases = Phases::new(control.phase, streams);
     let settings = Rc::new(Settings {
         mode: config.mode,
         rounds: config.rounds,
@@ -88,7 +90,7 @@ pub fn swarm(
         fan_out: relay.fan_out,
         limit: relay.retransmit.limit(robots as usize),
         interval: relay.interval.get(),
-        turns: Turns::new(relay.timing(control_period), 0, streams),
+        turns: Turns::new(relay.timing(control.period()), Rhythm::Relay, phases, streams),
         peers: streams.keyed(PEERS),
         contacts: streams.keyed(ROUND),
         ground,

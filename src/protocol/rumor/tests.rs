@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geometry::Pose;
+use crate::protocol::control::PhaseConfig;
 use crate::protocol::gossip::{RelayConfig, RetransmitConfig};
 use crate::protocol::{Frame, MessageSize};
 
@@ -17,7 +18,11 @@ fn robots(mode: Mode, relay: RelayConfig) -> Vec<Rumor> {
         relay,
         ..GossipConfig::default()
     };
-    swarm(&config, &gossip, PERIOD, 20, Ground::still(), Streams::new(1, 0))
+    let control = ControlConfig {
+        phase: PhaseConfig::Together,
+        ..ControlConfig::default()
+    };
+    swarm(&config, &gossip, &control, 20, Ground::still(), Streams::new(1, 0))
 }
 
 fn rumor(to: Option<u32>, rumor: u8) -> Message {

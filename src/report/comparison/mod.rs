@@ -1,5 +1,7 @@
 //! Settings compared, as text for people.
 
+mod factors;
+mod finding;
 mod tables;
 mod words;
 
@@ -66,10 +68,32 @@ pub(super) fn compared(comparison: &Comparison) -> String {
     } else {
         "independent: their seeds differ"
     };
-    let family = comparison.pairs.len();
     format!(
-        "{} settings × {trials} trials, {how}; p adjusted by Holm over {family} test{}",
+        "{} settings × {trials} trials, {how}; {}",
         comparison.settings.len(),
-        if family == 1 { "" } else { "s" }
+        family(comparison)
     )
+}
+
+/// Over what p-values are adjusted.
+pub(super) fn family(comparison: &Comparison) -> String {
+    let family = &comparison.family;
+    let mut words = format!(
+        "p adjusted by Holm over {} test{}",
+        count(family.tests),
+        if family.tests == 1 { "" } else { "s" }
+    );
+    if family.alike > 0 {
+        words.push_str(&format!(
+            ", without {} of what is the same in every trial",
+            count(family.alike)
+        ));
+    }
+    if family.impossible > 0 {
+        words.push_str(&format!(
+            ", without {} that so few trials cannot decide",
+            count(family.impossible)
+        ));
+    }
+    words
 }

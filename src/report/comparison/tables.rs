@@ -2,7 +2,8 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table};
 
-use super::words::{fitted, label, percent, probability};
+use super::factors;
+use super::words::{can_differ, fitted, label, percent, probability};
 use crate::metrics::comparison::{Comparison, Pair, Setting, Verdict};
 use crate::metrics::figures::{Better, Figure};
 use crate::report::layout::{Page, RULED, WIDTH};
@@ -11,7 +12,7 @@ use crate::report::number::{NOTHING, count, figure as number};
 /// Figures side by side in one table.
 const ABREAST: usize = 2;
 
-fn put(page: &mut Page, header: Vec<String>, rows: impl Iterator<Item = Vec<String>>) {
+pub fn put(page: &mut Page, header: Vec<String>, rows: impl Iterator<Item = Vec<String>>) {
     let mut table = Table::new();
     table.load_style(RULED).set_header(header);
     table
@@ -111,9 +112,13 @@ fn value(setting: &Setting, figure: &Figure) -> String {
     }
 }
 
-/// A table of differences for each figure.
+/// For each figure a table of what factors do, and one of the differences between settings.
 pub fn differences(page: &mut Page, comparison: &Comparison) {
     for figure in compared(comparison) {
+        factors::effects(page, comparison, figure);
+        if comparison.pairs_in(&figure.key).next().is_none() {
+            continue;
+        }
         let against = comparison
             .reference
             .as_deref()
@@ -129,13 +134,32 @@ pub fn differences(page: &mut Page, comparison: &Comparison) {
             .map(|pair| difference(comparison, pair));
         put(page, header.to_vec(), rows);
     }
-    let unclear = |pair: &Pair| pair.verdict == Verdict::NoDetectableDifference && pair.plan.is_some();
-    if comparison.pairs.iter().any(unclear) {
+    if comparison
+        .pairs
+        .iter()
+        .any(|pair| is_unclear(pair) && pair.plan.is_some())
+    {
         page.line("");
         page.words(&format!(
-            "Unclear: no detectable difference. The number of trials is what would show one of {} of the other's value with 80 % power.",
+            "Unclear: no detectable difference. Cannot tell: so few trials cannot show any. The number of trials is what would show one of {} of the other's value with 80 % power.",
             percent(Some(comparison.relevant))
         ));
+    }
+}
+
+/// Whether a difference may be there that the trials did not show, or could not.
+fn is_unclear(pair: &Pair) -> bool {
+    can_differ(pair) && matches!(pair.verdict, Verdict::NoDetectableDifference | Verdict::CannotTell)
+}
+
+/// A verdict in a word or two.
+pub fn effect_verdict(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Better => "better",
+        Verdict::Worse => "worse",
+        Verdict::NoDetectableDifference => "unclear",
+        Verdict::CannotTell => "cannot tell",
+        Verdict::NotComparable => NOTHING,
     }
 }
 
@@ -145,12 +169,10 @@ fn difference(comparison: &Comparison, pair: &Pair) -> Vec<String> {
         Some(_) => setting,
         None => format!("{setting}\nless {}", label(comparison, &pair.against)),
     };
-    let verdict = match (pair.verdict, &pair.plan) {
-        (Verdict::Better, _) => "better".to_owned(),
-        (Verdict::Worse, _) => "worse".to_owned(),
-        (Verdict::NoDetectableDifference, Some(plan)) => format!("unclear, {}", count(plan.trials)),
-        (Verdict::NoDetectableDifference, None) => "unclear".to_owned(),
-        (Verdict::NotComparable, _) => NOTHING.to_owned(),
+    let verdict = match &pair.plan {
+        Some(plan) if is_unclear(pair) => format!("{}, {}", effect_verdict(pair.verdict), count(plan.trials)),
+        _ if pair.verdict == Verdict::NoDetectableDifference && !can_differ(pair) => "the same".to_owned(),
+        _ => effect_verdict(pair.verdict).to_owned(),
     };
     let delta = pair
         .cliffs_delta

@@ -5,11 +5,13 @@ use plotly::layout::{AxisRange, HoverMode};
 use plotly::{Bar, BoxPlot, Plot};
 
 use super::PageInput;
-use super::chart::{axis, categories, chart, faint, role_colour, shown, stacked, topic_colour, words};
+use super::chart::{axis, chart, faint, one_value, role_colour, shown, stacked, topic_colour, words};
 use super::data::Spread;
 use super::figure::{Figure, Panel};
+use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::TrafficRow;
+use crate::report::number;
 
 const UNIT: &str = "bytes a control step, headers included";
 const SPREAD: [&str; 11] = [
@@ -107,7 +109,11 @@ fn spread_figure(id: &'static str, title: &'static str, caption: String, ways: &
     let mut table = DataTable::new(&SPREAD);
     let mut panels = Vec::new();
     for ((direction, heading, _), groups) in WAYS.iter().zip(ways) {
-        panels.push(Panel::of_rows(heading, boxes(groups), groups.len()));
+        let ends = groups.iter().flat_map(|group| [group.spread.min, group.spread.max]);
+        panels.push(match one_value(ends) {
+            Some(value) => Panel::words(*heading, format!("{} B/step in each of them.", number::figure(value))),
+            None => Panel::of_rows(*heading, boxes(groups), groups.len()),
+        });
         for group in groups {
             let Spread {
                 n,
@@ -127,14 +133,17 @@ fn spread_figure(id: &'static str, title: &'static str, caption: String, ways: &
         title: title.into(),
         caption,
         panels,
+        key: Vec::new(),
         table,
     }
 }
 
 fn boxes(groups: &[Group]) -> Plot {
-    let mut plot = chart(axis("B/step"), categories(""), HoverMode::Closest);
+    let readable: Vec<String> = groups.iter().map(|group| group.name.replace('_', " ")).collect();
+    let names = Names::of(readable.iter().map(String::as_str));
+    let mut plot = chart(axis("B/step"), names.down(), HoverMode::Closest);
     // The first stands at the top.
-    for group in groups.iter().rev() {
+    for (place, group) in groups.iter().enumerate().rev() {
         let Spread {
             min,
             quantiles,
@@ -143,7 +152,7 @@ fn boxes(groups: &[Group]) -> Plot {
             ..
         } = group.spread;
         let one = |value: f64| vec![shown(value)];
-        let drawn = BoxPlot::<f64, String>::new_xy(Vec::new(), vec![words(group.name)])
+        let drawn = BoxPlot::<f64, String>::new_xy(Vec::new(), vec![names.at(place)])
             .name(words(group.name))
             .orientation(Orientation::Horizontal)
             .q1(one(quantiles[1]))
@@ -198,12 +207,11 @@ pub fn headers(input: &PageInput) -> Figure {
             header_rate.into(),
         ]);
         let label = share.map_or(String::new(), |share| format!("{:.0} %", share * 100.0));
-        bars.push((words(input.topic(topic)), payload_rate, header_rate, label));
+        bars.push((input.topic(topic).replace('_', " "), payload_rate, header_rate, label));
     }
-    bars.reverse();
-    let names: Vec<String> = bars.iter().map(|(name, ..)| name.clone()).collect();
+    let names = Names::of(bars.iter().map(|(name, ..)| name.as_str()));
     let stack = |name: &str, colour: &'static str, values: Vec<f64>, labels: Option<Vec<String>>| {
-        let bar = Bar::new(values.into_iter().map(shown).collect(), names.clone())
+        let bar = Bar::new(values.into_iter().map(shown).collect(), names.all())
             .name(name)
             .orientation(Orientation::Horizontal)
             .marker(Marker::new().color(colour))
@@ -219,7 +227,7 @@ pub fn headers(input: &PageInput) -> Figure {
     // Room for the label of the longest bar.
     let longest = bars.iter().map(|bar| bar.1 + bar.2).fold(f64::MIN_POSITIVE, f64::max);
     let x = axis("B/step sent by a robot, mean").range(AxisRange::new(0.0, longest * 1.3));
-    let mut plot = stacked(x, categories(""));
+    let mut plot = stacked(x, names.down());
     plot.add_trace(stack(
         "payload",
         "#4d7ea8",
@@ -244,7 +252,12 @@ pub fn headers(input: &PageInput) -> Figure {
             input.scenario.radio.frame_header_bytes,
             input.scenario.radio.message_header_bytes
         ),
-        panels: vec![Panel::of_rows("", plot, input.topics.len())],
+        panels: vec![if bars.iter().all(|bar| bar.1 + bar.2 == 0.0) {
+            Panel::words("", "Nothing was sent.")
+        } else {
+            Panel::of_rows("", plot, input.topics.len())
+        }],
+        key: Vec::new(),
         table,
     }
 }

@@ -6,6 +6,8 @@ use plotly::configuration::{Configuration, DisplayModeBar, ModeBarButtonName};
 use plotly::layout::{Axis, AxisRange, BarMode, HoverMode, Legend, Margin, TraceOrder};
 use plotly::{Layout, Plot, Scatter};
 
+use crate::metrics::comparison::apart;
+
 /// Ink of axes and words.
 pub const INK: &str = "#333333";
 /// Lines of the grid.
@@ -55,10 +57,21 @@ pub fn faint(colour: &str, opacity: f64) -> Rgba {
     Rgba::new(part(1), part(3), part(5), opacity)
 }
 
-/// Words as a chart shows them: plotly takes some tags for its own.
+/// A name as a chart shows it: plotly takes some tags for its own.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Words as a chart shows them, blanks between.
 pub fn words(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    text.replace('_', " ")
+    escaped(text).replace('_', " ")
+}
+
+/// The value of all `values`, if they are one but for rounding: no chart is needed to see that.
+pub fn one_value(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut values = values.into_iter();
+    let first = values.next()?;
+    values.all(|value| apart(value, first) == 0.0).then_some(first)
 }
 
 /// Rounded to what a screen can show; what is exact stands in the table.
@@ -82,17 +95,13 @@ pub fn axis(title: &str) -> Axis {
         .range_mode(plotly::layout::RangeMode::ToZero)
 }
 
-/// An axis of names.
-pub fn categories(title: &str) -> Axis {
-    bare(title).show_grid(false).auto_margin(true)
-}
-
 /// An axis of shares in percent.
 pub fn percent_axis(title: &str) -> Axis {
     axis(title).range(AxisRange::new(-2.0, 102.0)).tick_suffix(" %")
 }
 
-fn bare(title: &str) -> Axis {
+/// An axis with its title and nothing else.
+pub fn bare(title: &str) -> Axis {
     Axis::new()
         .title(Title::with_text(title).font(Font::new().size(12).color(INK)))
         .line_color(INK)

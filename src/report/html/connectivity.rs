@@ -5,12 +5,14 @@ use plotly::common::LineShape;
 use plotly::layout::HoverMode;
 
 use super::PageInput;
-use super::chart::{DIRECTIONS, Points, axis, band, chart, line, role_colour};
+use super::chart::{DIRECTIONS, Points, axis, band, chart, line, one_value, role_colour};
 use super::data::{Moment, over_time};
+use super::faults;
 use super::figure::{Figure, Panel};
 use super::table::DataTable;
 use crate::engine::SimTime;
 use crate::metrics::{ConnectivitySample, TrialRecord};
+use crate::report::number;
 
 const HEAD: [&str; 9] = [
     "figure",
@@ -131,18 +133,28 @@ pub fn graph(input: &PageInput) -> Option<Figure> {
             "%{x:.4g} s: at most %{y:.3g}<extra></extra>",
         ));
     }
+    faults::mark(&mut first, input);
+    faults::mark(&mut second, input);
+    let ends = |moments: &[Moment]| one_value(moments.iter().flat_map(|moment| [moment.spread.min, moment.spread.max]));
+    let panel = |title: &'static str, plot: Plot, always: Option<f64>| match always {
+        Some(value) => Panel::words(title, format!("{} at all times of all trials.", number::figure(value))),
+        None => Panel::new(title, plot),
+    };
+    let panels = vec![
+        panel("Algebraic connectivity", first, ends(&lambda2)),
+        panel("Components", second, ends(&components)),
+    ];
     Some(Figure {
         id: "connectivity".into(),
         title: "Connectivity over time".into(),
         caption: format!(
             "First the algebraic connectivity λ₂ of the graph of live robots within range of each other: 0 where it falls apart, larger the \
-             harder it is to cut. Then into how many pieces it falls. {}",
-            input.band_words()
+             harder it is to cut. Then into how many pieces it falls. {}{}",
+            input.band_words(),
+            faults::words(input)
         ),
-        panels: vec![
-            Panel::new("Algebraic connectivity", first),
-            Panel::new("Components", second),
-        ],
+        panels,
+        key: Vec::new(),
         table,
     })
 }
@@ -154,6 +166,7 @@ pub fn roles(input: &PageInput) -> Option<Figure> {
     }
     let mut table = DataTable::new(&HEAD);
     let mut plot = chart(axis("time, s"), axis("robots"), HoverMode::Closest);
+    let mut changes = false;
     for role in 0..input.roles.len() {
         let count = |sample: &ConnectivitySample| sample.roles.get(role).map(|&robots| f64::from(robots));
         let moments = over_time(input.records, |record| samples(record, count));
@@ -161,6 +174,8 @@ pub fn roles(input: &PageInput) -> Option<Figure> {
             continue;
         }
         let name = input.role(role);
+        let ends = moments.iter().flat_map(|moment| [moment.spread.min, moment.spread.max]);
+        changes |= one_value(ends).is_none();
         rows(&mut table, name, &moments);
         let banded = input.records.len() > 1;
         draw(
@@ -174,14 +189,21 @@ pub fn roles(input: &PageInput) -> Option<Figure> {
         );
     }
     table.rows.first()?;
+    faults::mark(&mut plot, input);
     Some(Figure {
         id: "roles".into(),
         title: "Robots in each role over time".into(),
         caption: format!(
-            "How many robots are in each role, whether they are well or have failed. {}",
-            input.band_words()
+            "How many robots are in each role, whether they are well or have failed. {}{}",
+            input.band_words(),
+            faults::words(input)
         ),
-        panels: vec![Panel::new("", plot)],
+        panels: vec![if changes {
+            Panel::new("", plot)
+        } else {
+            Panel::words("", "No robot changes its role in any trial.")
+        }],
+        key: Vec::new(),
         table,
     })
 }

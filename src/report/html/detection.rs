@@ -5,9 +5,10 @@ use plotly::common::{LineShape, Marker, Orientation};
 use plotly::layout::HoverMode;
 
 use super::PageInput;
-use super::chart::{axis, categories, cause_colour, chart, line, percent_axis, stacked, words};
+use super::chart::{axis, cause_colour, chart, line, one_value, percent_axis, stacked, words};
 use super::data::ecdf;
 use super::figure::{Figure, Panel};
+use super::names::Names;
 use super::table::DataTable;
 use crate::metrics::detection::{Cause, FailureOutcome, Verdict};
 use crate::metrics::summary::Measured;
@@ -23,7 +24,8 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
             .count() as u64
     };
     let mut table = DataTable::new(&["verdict", "cause", "suspicions"]);
-    let mut plot = stacked(axis("suspicions"), categories(""));
+    let names = Names::of(Verdict::ALL.map(said));
+    let mut plot = stacked(axis("suspicions"), names.down());
     for (number, cause) in Cause::ALL.into_iter().enumerate() {
         let counts = Verdict::ALL.map(|verdict| count(verdict, cause));
         if counts.iter().all(|&count| count == 0) {
@@ -34,14 +36,11 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
                 .rows
                 .push(vec![said(verdict).into(), cause.name().into(), count.into()]);
         }
-        let bars = Bar::new(
-            counts.iter().rev().copied().collect(),
-            Verdict::ALL.iter().rev().map(|&verdict| said(verdict)).collect(),
-        )
-        .name(words(cause.name()))
-        .orientation(Orientation::Horizontal)
-        .marker(Marker::new().color(cause_colour(number)))
-        .hover_template("%{y}: %{x}");
+        let bars = Bar::new(counts.to_vec(), names.all())
+            .name(words(cause.name()))
+            .orientation(Orientation::Horizontal)
+            .marker(Marker::new().color(cause_colour(number)))
+            .hover_template("%{y}: %{x}");
         plot.add_trace(bars);
     }
     let total = all().count() as u64;
@@ -56,6 +55,7 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
             number::count(total)
         ),
         panels: vec![Panel::of_rows("", plot, Verdict::ALL.len())],
+        key: Vec::new(),
         table,
     })
 }
@@ -107,6 +107,11 @@ pub fn times(input: &PageInput) -> Option<Figure> {
             continue;
         }
         words.push(format!("{} {what}", number::count(values.len() as u64)));
+        if let Some(value) = one_value(values.iter().copied()) {
+            table.rows.push(vec![title.into(), value.into(), 100.0.into()]);
+            panels.push(Panel::words(title, format!("{} each time.", number::seconds(value))));
+            continue;
+        }
         let curve: Vec<[f64; 2]> = ecdf(values)
             .into_iter()
             .map(|[time, share]| [time, share * 100.0])
@@ -139,6 +144,7 @@ pub fn times(input: &PageInput) -> Option<Figure> {
             words.join(", ")
         ),
         panels,
+        key: Vec::new(),
         table,
     })
 }

@@ -17,18 +17,26 @@ pub struct Figure {
     pub caption: String,
     /// Its charts.
     pub panels: Vec<Panel>,
+    /// Names of the numbers in its charts, from 1; none where charts name what they show.
+    pub key: Vec<String>,
     /// Its data.
     pub table: DataTable,
 }
 
-/// A chart of a figure.
+/// A part of a figure.
 pub struct Panel {
     /// What tells it from the others; empty if it is alone.
-    pub title: &'static str,
-    /// The chart.
-    pub plot: Plot,
-    /// Its height in CSS pixels.
-    pub height: u32,
+    pub title: Cow<'static, str>,
+    /// What is seen.
+    pub content: Content,
+}
+
+/// What is seen in a part of a figure.
+pub enum Content {
+    /// A chart, and its height in CSS pixels.
+    Chart(Box<Plot>, u32),
+    /// A sentence, where a chart would show one value only.
+    Words(String),
 }
 
 /// Height of a chart that is as any other.
@@ -36,39 +44,64 @@ pub const HEIGHT: u32 = 320;
 
 impl Panel {
     /// A chart of the usual height.
-    pub fn new(title: &'static str, plot: Plot) -> Self {
+    pub fn new(title: impl Into<Cow<'static, str>>, plot: Plot) -> Self {
+        Self::of_height(title, plot, HEIGHT)
+    }
+
+    /// A chart of `rows` bars, boxes or intervals: the more there are, the closer they stand.
+    pub fn of_rows(title: impl Into<Cow<'static, str>>, plot: Plot, rows: usize) -> Self {
+        Self::of_height(title, plot, 100 + row_height(rows) * rows.max(1) as u32)
+    }
+
+    /// A chart of its own height.
+    pub fn of_height(title: impl Into<Cow<'static, str>>, plot: Plot, height: u32) -> Self {
         Self {
-            title,
-            plot,
-            height: HEIGHT,
+            title: title.into(),
+            content: Content::Chart(Box::new(plot), height),
         }
     }
 
-    /// A chart of `rows` bars or boxes.
-    pub fn of_rows(title: &'static str, plot: Plot, rows: usize) -> Self {
-        let height = 100 + 44 * rows.max(1) as u32;
-        Self { title, plot, height }
+    /// A sentence instead of a chart.
+    pub fn words(title: impl Into<Cow<'static, str>>, words: impl Into<String>) -> Self {
+        Self {
+            title: title.into(),
+            content: Content::Words(words.into()),
+        }
+    }
+}
+
+/// Height of one of so many rows, CSS pixels; the least still has room for its name.
+pub fn row_height(rows: usize) -> u32 {
+    match rows {
+        0..=10 => 44,
+        11..=20 => 30,
+        21..=40 => 22,
+        _ => 18,
     }
 }
 
 impl Figure {
     /// The figure on the page, number `number`, its data files named after `scenario`.
     pub fn markup(&self, number: usize, scenario: &str) -> Markup {
-        let plots = self.panels.iter().enumerate().map(|(panel, chart)| {
-            // plotly writes the data as JSON in which no tag can end the script.
-            let plot = chart.plot.to_inline_html(Some(&format!("{}-{panel}", self.id)));
-            (chart, PreEscaped(plot))
-        });
         html! {
             figure id=(self.id) {
                 h3 { "Figure " (number) ". " (self.title) }
                 div class=(if self.panels.len() > 1 { "panels" } else { "panel" }) {
-                    @for (chart, plot) in plots {
+                    @for (place, panel) in self.panels.iter().enumerate() {
                         div class="chart" {
-                            @if !chart.title.is_empty() { h4 { (chart.title) } }
-                            div class="plot" style=(format!("height:{}px", chart.height)) { (plot) }
+                            @if !panel.title.is_empty() { h4 { (panel.title) } }
+                            @match &panel.content {
+                                // plotly writes the data as JSON in which no tag can end the script.
+                                Content::Chart(plot, height) => div class="plot" style=(format!("height:{height}px")) {
+                                    (PreEscaped(plot.to_inline_html(Some(&format!("{}-{place}", self.id)))))
+                                },
+                                Content::Words(words) => p class="flat" { (words) },
+                            }
                         }
                     }
+                }
+                @if !self.key.is_empty() {
+                    ol class="key" { @for name in &self.key { li { (name) } } }
                 }
                 figcaption { (self.caption) }
                 (self.table.markup(&format!("{scenario}-{}.csv", self.id)))

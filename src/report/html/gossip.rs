@@ -5,10 +5,13 @@ use plotly::common::{LineShape, Marker, Orientation};
 use plotly::layout::HoverMode;
 
 use super::PageInput;
-use super::chart::{ALL, axis, categories, chart, line, percent_axis, shown, topic_colour, words};
+use super::chart::{ALL, axis, chart, line, one_value, percent_axis, shown, topic_colour, words};
+use super::faults;
 use super::figure::{Figure, Panel};
+use super::names::Names;
 use super::table::DataTable;
 use crate::engine::SimTime;
+use crate::report::number;
 
 /// Points of a curve: more than a screen can show would only make the page long.
 const MOST_POINTS: usize = 300;
@@ -38,15 +41,18 @@ pub fn spread(input: &PageInput) -> Option<Figure> {
     let mut plot = chart(axis("time, s"), percent_axis("pairs informed"), HoverMode::Closest);
     let hover = "%{y:.1f} % at %{x:.4g} s<extra></extra>";
     plot.add_trace(line("informed", ALL, &curve, LineShape::Hv, hover).show_legend(false));
+    faults::mark(&mut plot, input);
     Some(Figure {
         id: "spread".into(),
         title: "Spread of rumours".into(),
         caption: format!(
             "Which share of all pairs of a robot and a rumour {} was informed by when: a robot knows a rumour from its arrival on. All \
-             trials in one curve; robots that failed are counted too.",
-            input.in_trials()
+             trials in one curve; robots that failed are counted too.{}",
+            input.in_trials(),
+            faults::words(input)
         ),
         panels: vec![Panel::new("", plot)],
+        key: Vec::new(),
         table,
     })
 }
@@ -55,12 +61,14 @@ pub fn spread(input: &PageInput) -> Option<Figure> {
 pub fn duplicates(input: &PageInput) -> Option<Figure> {
     let duplicates = input.summary.duplicates.as_ref()?;
     let mut table = DataTable::new(&["topic", "duplicates in messages delivered", "95 % from", "to"]);
+    let topics = || duplicates.by_topic.0.iter().enumerate();
+    let readable: Vec<String> = topics().map(|(_, (name, _))| name.replace('_', " ")).collect();
+    let names = Names::of(readable.iter().map(String::as_str));
     let mut plot = chart(
         axis("share of the messages delivered").tick_suffix(" %"),
-        categories(""),
+        names.down(),
         HoverMode::Closest,
     );
-    let topics = || duplicates.by_topic.0.iter().enumerate();
     for (topic, (name, share)) in topics() {
         table.rows.push(vec![
             name.as_str().into(),
@@ -68,7 +76,7 @@ pub fn duplicates(input: &PageInput) -> Option<Figure> {
             share.ci95[0].into(),
             share.ci95[1].into(),
         ]);
-        let bar = Bar::new(vec![shown(100.0 * share.value.unwrap_or(0.0))], vec![words(name)])
+        let bar = Bar::new(vec![shown(100.0 * share.value.unwrap_or(0.0))], vec![names.at(topic)])
             .name(words(name))
             .orientation(Orientation::Horizontal)
             .marker(Marker::new().color(topic_colour(topic)))
@@ -84,7 +92,15 @@ pub fn duplicates(input: &PageInput) -> Option<Figure> {
              judges it: mean over trials. A topic of which nothing was delivered has none.",
             input.in_trials()
         ),
-        panels: vec![Panel::of_rows("", plot, topics().count())],
+        panels: vec![
+            match one_value(topics().map(|(_, (_, share))| share.value.unwrap_or(0.0))) {
+                Some(share) if topics().count() > 1 || share == 0.0 => {
+                    Panel::words("", format!("{} on every topic.", number::percent(share)))
+                }
+                _ => Panel::of_rows("", plot, topics().count()),
+            },
+        ],
+        key: Vec::new(),
         table,
     })
 }

@@ -34,11 +34,10 @@ pub fn traffic(input: &PageInput) -> Option<Figure> {
         ];
         table.rows.push(row);
     }
-    let panels = WAYS.iter().zip(&loads).map(|((_, heading, _), load)| Panel {
-        title: heading,
-        plot: map(input, record, load),
-        height: HEIGHT,
-    });
+    let panels = WAYS
+        .iter()
+        .zip(&loads)
+        .map(|((_, heading, _), load)| Panel::of_height(*heading, map(input, record, load), HEIGHT));
     Some(Figure {
         id: "map".into(),
         title: "The swarm with its traffic".into(),
@@ -55,6 +54,7 @@ pub fn traffic(input: &PageInput) -> Option<Figure> {
             }
         ),
         panels: panels.collect(),
+        key: Vec::new(),
         table,
     })
 }

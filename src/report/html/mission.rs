@@ -1,12 +1,13 @@
 //! Times until something is done, of which some were cut off: missions, and targets that get their links back.
 
 use plotly::Scatter;
-use plotly::common::{LineShape, Marker, MarkerSymbol, Mode};
+use plotly::common::{DashType, Line, LineShape, Marker, MarkerSymbol, Mode};
 use plotly::layout::{Axis, AxisRange, HoverMode, RangeMode};
 
 use super::PageInput;
 use super::chart::{Points, axis, band, chart, line, percent_axis, shown, topic_colour};
-use super::figure::{Figure, Panel};
+use super::figure::{Figure, HEIGHT, Panel};
+use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::comparison::{Comparison, Setting, Survival};
 use crate::metrics::statistics::{Observation, Step, survival_curve};
@@ -16,6 +17,8 @@ use crate::report::number;
 const COLOUR: &str = "#0072b2";
 /// More curves than this are drawn without their bands, which would cover each other.
 const MOST_BANDS: usize = 4;
+/// Curves that colours alone tell apart.
+const DISTINCT: usize = 7;
 
 /// When missions were complete.
 pub fn completion(input: &PageInput) -> Option<Figure> {
@@ -119,7 +122,9 @@ pub fn by_setting(comparison: &Comparison) -> Option<Figure> {
     let mut plot = chart(across, percent_axis("trials complete"), HoverMode::Closest);
     let layout = plot.layout().clone().show_legend(true);
     plot.set_layout(layout);
+    let names = Names::of(curves.iter().map(|(name, _)| name.as_str()));
     for (place, (name, survival)) in curves.iter().enumerate() {
+        let shown_as = names.at(place);
         for step in &survival.curve {
             let [low, high] = step.band;
             let shares = [step.time, done(step.survival), done(high), done(low)].map(Cell::from);
@@ -135,11 +140,22 @@ pub fn by_setting(comparison: &Comparison) -> Option<Figure> {
         if curves.len() <= MOST_BANDS {
             let [high, low] = [points(|step| step.band[1]), points(|step| step.band[0])];
             for edge in band(name, colour, &high, &low, &LineShape::Hv) {
-                plot.add_trace(edge);
+                plot.add_trace(edge.name(&shown_as).legend_group(&shown_as));
             }
         }
         let hover = "%{y:.1f} % by %{x:.5g}<extra>%{fullData.name}</extra>";
-        plot.add_trace(line(name, colour, &points(|step| step.survival), LineShape::Hv, hover));
+        let curve = line(name, colour, &points(|step| step.survival), LineShape::Hv, hover);
+        let curve = curve.name(&shown_as).legend_group(&shown_as);
+        plot.add_trace(if place < DISTINCT {
+            curve
+        } else {
+            let style = Line::new().color(colour).width(2.0).shape(LineShape::Hv);
+            curve.line(style.dash(if place < 2 * DISTINCT {
+                DashType::Dash
+            } else {
+                DashType::Dot
+            }))
+        });
     }
     Some(Figure {
         id: "completion-by-setting".into(),
@@ -152,7 +168,9 @@ pub fn by_setting(comparison: &Comparison) -> Option<Figure> {
                 " Greenwood's bands of 95 % are in the table."
             }
         ),
-        panels: vec![Panel::new("", plot)],
+        // On a telephone the legend has a line for each name.
+        panels: vec![Panel::of_height("", plot, HEIGHT + 20 * curves.len().min(40) as u32)],
+        key: Vec::new(),
         table,
     })
 }
@@ -254,6 +272,7 @@ fn curve(
         title: title.into(),
         caption,
         panels: vec![Panel::new("", plot)],
+        key: Vec::new(),
         table,
     }
 }

@@ -1,13 +1,14 @@
 //! Settings in the plane of two figures.
 
 use plotly::Scatter;
-use plotly::common::{Marker, Mode};
-use plotly::layout::HoverMode;
+use plotly::common::{Font, HoverInfo, Marker, Mode, Position};
+use plotly::layout::{Axis, AxisRange, HoverMode};
 
-use super::chart::{chart, shown, words};
+use super::chart::{chart, escaped, shown};
 use super::figure::{Figure, Panel};
 use super::settings::{better, capital, error_bars, near, with_unit};
-use super::table::DataTable;
+use super::table::{Cell, DataTable};
+use crate::metrics::Estimate;
 use crate::metrics::comparison::{Comparison, ParetoPoint};
 use crate::metrics::figures;
 use crate::report::comparison::label;
@@ -16,54 +17,74 @@ const FRONT: &str = "#d55e00";
 const BEATEN: &str = "#8a8a8a";
 /// Height of the plane, in CSS pixels.
 const PLANE: u32 = 440;
+/// The plane on a telephone, in CSS pixels. Wider ones only take points further apart, and with them their labels.
+const NARROW: [f64; 2] = [270.0, 330.0];
+/// Of a label: width of a character and height, in CSS pixels.
+const LETTER: [f64; 2] = [7.0, 15.0];
+/// Longest name that stands beside its point.
+const LONGEST: usize = 12;
 
 /// Settings in the plane of two figures.
 pub fn plane(comparison: &Comparison) -> Option<Figure> {
     let pareto = comparison.pareto.as_ref().filter(|pareto| !pareto.points.is_empty())?;
     let (x, y) = (comparison.figure(&pareto.x)?, comparison.figure(&pareto.y)?);
-    let mut plot = chart(near(&with_unit(x)), near(&with_unit(y)), HoverMode::Closest);
+    let points = &pareto.points;
+    let estimates = [x, y].map(|figure| {
+        let of = |point: &ParetoPoint| {
+            let setting = comparison.setting(&point.setting)?;
+            Some(setting.figure(&figure.key)?.estimate)
+        };
+        points
+            .iter()
+            .map(|point| of(point).unwrap_or_default())
+            .collect::<Vec<_>>()
+    });
+    let ranges = [0, 1].map(|axis| range(&estimates[axis]));
+    let drawn = |figure: &figures::Figure, [low, high]: [f64; 2]| -> Axis {
+        near(&with_unit(figure)).range(AxisRange::new(shown(low), shown(high)))
+    };
+    let mut plot = chart(drawn(x, ranges[0]), drawn(y, ranges[1]), HoverMode::Closest);
     let layout = plot.layout().clone().show_legend(true);
     plot.set_layout(layout);
-    for (on_front, name, colour) in [(true, "beaten by none", FRONT), (false, "beaten by another", BEATEN)] {
-        let points: Vec<&ParetoPoint> = pareto
-            .points
-            .iter()
-            .filter(|point| point.on_front == on_front)
+    let name = |place: usize| label(comparison, &points[place].setting);
+    for (on_front, kind, colour) in [(true, "beaten by none", FRONT), (false, "beaten by another", BEATEN)] {
+        let places: Vec<usize> = (0..points.len())
+            .filter(|&place| points[place].on_front == on_front)
             .collect();
-        let whiskers = |figure: &figures::Figure| {
-            let estimate = |point: &ParetoPoint| {
-                let setting = comparison.setting(&point.setting);
-                setting
-                    .and_then(|setting| setting.figure(&figure.key))
-                    .map(|figure| figure.estimate)
-            };
-            error_bars(
-                &points
-                    .iter()
-                    .map(|point| estimate(point).unwrap_or_default())
-                    .collect::<Vec<_>>(),
-            )
+        let whiskers = |axis: usize| {
+            let chosen: Vec<Estimate> = places.iter().map(|&place| estimates[axis][place]).collect();
+            error_bars(&chosen).color(colour)
         };
-        let labels = points.iter().map(|point| words(label(comparison, &point.setting)));
         let marks = Scatter::new(
-            points.iter().map(|point| shown(point.x)).collect(),
-            points.iter().map(|point| shown(point.y)).collect(),
+            places.iter().map(|&place| shown(points[place].x)).collect(),
+            places.iter().map(|&place| shown(points[place].y)).collect(),
         )
-        .name(name)
+        .name(kind)
         .mode(Mode::Markers)
-        .text_array(labels.collect())
+        .hover_text_array(places.iter().map(|&place| escaped(name(place))).collect())
         .marker(Marker::new().color(colour).size(8))
-        .error_x(whiskers(x).color(colour))
-        .error_y(whiskers(y).color(colour))
-        .hover_template("%{text}: %{x:.5g}, %{y:.5g}<extra></extra>");
-        if !points.is_empty() {
+        .error_x(whiskers(0))
+        .error_y(whiskers(1))
+        .hover_template("%{hovertext}: %{x:.5g}, %{y:.5g}<extra></extra>");
+        if !places.is_empty() {
             plot.add_trace(marks);
         }
     }
-    let mut table = DataTable::new(&["setting", &with_unit(x), &with_unit(y), "beaten by"]);
-    table.rows.extend(pareto.points.iter().map(|point| {
+    let spots: Vec<[f64; 2]> = points
+        .iter()
+        .map(|point| {
+            let share = |axis: usize, value: f64| (value - ranges[axis][0]) / (ranges[axis][1] - ranges[axis][0]);
+            [NARROW[0] * share(0, point.x), NARROW[1] * (1.0 - share(1, point.y))]
+        })
+        .collect();
+    let names: Vec<&str> = (0..points.len()).map(name).collect();
+    let (labels, key) = labels(&spots, &names);
+    plot.add_trace(texts(&labels, points));
+    let mut table = DataTable::new(&["number", "setting", &with_unit(x), &with_unit(y), "beaten by"]);
+    table.rows.extend(points.iter().enumerate().map(|(place, point)| {
         vec![
-            label(comparison, &point.setting).into(),
+            Cell::Count(place as u64 + 1),
+            name(place).into(),
             point.x.into(),
             point.y.into(),
             if point.on_front { "none" } else { "another" }.into(),
@@ -73,17 +94,217 @@ pub fn plane(comparison: &Comparison) -> Option<Figure> {
         id: "pareto".into(),
         title: format!("{} and {}", capital(&x.name), y.name).into(),
         caption: format!(
-            "Settings by both figures ({}: {}; {}: {}), with 95 % intervals. Orange are those that no other beats in both, by their point estimates.",
+            "Settings by both figures ({}: {}; {}: {}), with 95 % intervals. Orange are those that no other beats in both, by their point estimates.{}",
             x.name,
             better(x),
             y.name,
-            better(y)
+            better(y),
+            if key.is_empty() {
+                ""
+            } else {
+                " Numbers are those of the list; points too close for a number each share one label."
+            }
         ),
-        panels: vec![Panel {
-            title: "",
-            plot,
-            height: PLANE,
-        }],
+        panels: vec![Panel::of_height("", plot, PLANE)],
+        key,
         table,
     })
+}
+
+/// The part of an axis that holds all intervals, with some room for labels.
+fn range(estimates: &[Estimate]) -> [f64; 2] {
+    let ends = estimates.iter().flat_map(|estimate| {
+        let [low, high] = estimate.ci95;
+        [estimate.value, low, high].into_iter().flatten()
+    });
+    let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| {
+        (low.min(end), high.max(end))
+    });
+    let margin = if high > low {
+        0.1 * (high - low)
+    } else {
+        0.5 * high.abs().max(1e-9)
+    };
+    [low - margin, high + margin]
+}
+
+/// A label of the points that it stands for.
+struct Label {
+    /// Places of its points; it stands at the first.
+    points: Vec<usize>,
+    text: String,
+    side: Side,
+}
+
+/// Towards which side of its point a label reaches: away from the nearer edge.
+#[derive(Clone, Copy)]
+enum Side {
+    Left,
+    Middle,
+    Right,
+}
+
+/// Labels that do not overlap, and the names of the numbers in them: names where each has room, else numbers, those of neighbours together.
+fn labels(spots: &[[f64; 2]], names: &[&str]) -> (Vec<Label>, Vec<String>) {
+    let apart = |labels: &[Label]| {
+        let all = (0..labels.len()).flat_map(|a| (a + 1..labels.len()).map(move |b| [a, b]));
+        all.into_iter()
+            .find(|[a, b]| overlap(extent(&labels[*a], spots), extent(&labels[*b], spots)))
+    };
+    let single = |place: usize, text: String| Label {
+        points: vec![place],
+        text,
+        side: side(spots[place][0]),
+    };
+    let named: Vec<Label> = names
+        .iter()
+        .enumerate()
+        .map(|(place, name)| single(place, escaped(name)))
+        .collect();
+    if names.iter().all(|name| name.chars().count() <= LONGEST) && apart(&named).is_none() {
+        return (named, Vec::new());
+    }
+    let mut labels: Vec<Label> = (0..names.len())
+        .map(|place| single(place, (place + 1).to_string()))
+        .collect();
+    while let Some([a, b]) = apart(&labels) {
+        let other = labels.remove(b);
+        let label = &mut labels[a];
+        label.points.extend(other.points);
+        // At its highest point, above which it stands.
+        label
+            .points
+            .sort_by(|p, q| spots[*p][1].total_cmp(&spots[*q][1]).then(p.cmp(q)));
+        label.text = numbers(&label.points);
+        label.side = side(spots[label.points[0]][0]);
+    }
+    (labels, names.iter().map(|&name| name.to_owned()).collect())
+}
+
+/// `1–3, 7` of the places 0, 1, 2 and 6; of many, how many they are.
+fn numbers(places: &[usize]) -> String {
+    let mut sorted = places.to_vec();
+    sorted.sort_unstable();
+    let runs = sorted.chunk_by(|a, b| a + 1 == *b);
+    let words: Vec<String> = runs
+        .map(|run| match run {
+            [one] => (one + 1).to_string(),
+            [one, other] => format!("{}, {}", one + 1, other + 1),
+            _ => format!("{}–{}", run[0] + 1, run[run.len() - 1] + 1),
+        })
+        .collect();
+    let words = words.join(", ");
+    if words.chars().count() > LONGEST {
+        format!("{} settings", places.len())
+    } else {
+        words
+    }
+}
+
+fn side(x: f64) -> Side {
+    match x / NARROW[0] {
+        share if share < 1.0 / 3.0 => Side::Right,
+        share if share > 2.0 / 3.0 => Side::Left,
+        _ => Side::Middle,
+    }
+}
+
+/// Left, right, top and bottom of a label.
+fn extent(label: &Label, spots: &[[f64; 2]]) -> [f64; 4] {
+    let [x, y] = spots[label.points[0]];
+    let width = LETTER[0] * label.text.chars().count() as f64 + 4.0;
+    let left = match label.side {
+        Side::Left => x - width,
+        Side::Middle => x - width / 2.0,
+        Side::Right => x,
+    };
+    [left, left + width, y - LETTER[1], y]
+}
+
+fn overlap(a: [f64; 4], b: [f64; 4]) -> bool {
+    a[0] < b[1] && b[0] < a[1] && a[2] < b[3] && b[2] < a[3]
+}
+
+fn texts(labels: &[Label], points: &[ParetoPoint]) -> Box<Scatter<f64, f64>> {
+    let at = |label: &Label| &points[label.points[0]];
+    let position = |label: &Label| match label.side {
+        Side::Left => Position::TopLeft,
+        Side::Middle => Position::TopCenter,
+        Side::Right => Position::TopRight,
+    };
+    Scatter::new(
+        labels.iter().map(|label| shown(at(label).x)).collect(),
+        labels.iter().map(|label| shown(at(label).y)).collect(),
+    )
+    .mode(Mode::Text)
+    .text_array(labels.iter().map(|label| label.text.clone()).collect::<Vec<_>>())
+    .text_position_array(labels.iter().map(position).collect())
+    .text_font(Font::new().size(11))
+    .clip_on_axis(false)
+    .hover_info(HoverInfo::Skip)
+    .show_legend(false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(spots: &[[f64; 2]], names: &[&str]) -> usize {
+        let (labels, key) = labels(spots, names);
+        let mut held: Vec<usize> = labels.iter().flat_map(|label| label.points.clone()).collect();
+        held.sort_unstable();
+        assert_eq!(held, (0..spots.len()).collect::<Vec<_>>(), "every point has a label");
+        assert!(key.is_empty() || key == names);
+        // Also on wider screens, where points are further apart and labels are not.
+        for factor in [1.0, 1.3, 2.2, 4.0] {
+            let wide: Vec<[f64; 2]> = spots.iter().map(|[x, y]| [x * factor, *y]).collect();
+            for (a, label) in labels.iter().enumerate() {
+                let clash = labels[a + 1..]
+                    .iter()
+                    .find(|other| overlap(extent(label, &wide), extent(other, &wide)));
+                assert!(
+                    clash.is_none(),
+                    "{} and {} at {factor}",
+                    label.text,
+                    clash.unwrap().text
+                );
+            }
+        }
+        labels.len()
+    }
+
+    #[test]
+    fn labels_of_forty_settings_do_not_overlap_at_any_width_and_leave_none_out() {
+        let names: Vec<String> = (0..40).map(|place| format!("setting {place}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let spread: Vec<[f64; 2]> = (0..40)
+            .map(|i| [f64::from(i * 97 % 270), f64::from(i * 61 % 330)])
+            .collect();
+        assert!(check(&spread, &names) > 15);
+        let crowded: Vec<[f64; 2]> = (0..40)
+            .map(|i| [130.0 + f64::from(i % 7), 100.0 + f64::from(i % 5)])
+            .collect();
+        assert_eq!(check(&crowded, &names), 1);
+        let curve: Vec<[f64; 2]> = (0..40)
+            .map(|i| [f64::from(i * i) / 6.0, 330.0 - f64::from(i) * 8.0])
+            .collect();
+        check(&curve, &names);
+    }
+
+    #[test]
+    fn a_few_short_names_stand_beside_their_points() {
+        let (labels, key) = labels(
+            &[[20.0, 20.0], [140.0, 200.0], [250.0, 300.0]],
+            &["0.1 s", "0.5 s", "2 s"],
+        );
+        let texts: Vec<&str> = labels.iter().map(|label| label.text.as_str()).collect();
+        assert_eq!((texts, key.len()), (vec!["0.1 s", "0.5 s", "2 s"], 0));
+    }
+
+    #[test]
+    fn numbers_of_neighbours_are_written_as_runs() {
+        assert_eq!(numbers(&[6, 0, 2, 1]), "1–3, 7");
+        assert_eq!(numbers(&[1, 0]), "1, 2");
+        assert_eq!(numbers(&[0, 2, 4, 6, 8, 10, 12]), "7 settings");
+    }
 }

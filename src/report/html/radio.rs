@@ -6,8 +6,9 @@ use plotly::common::{Font, HoverInfo, LineShape, Marker, Mode, Orientation, Posi
 use plotly::layout::{AxisRange, AxisType, HoverMode};
 
 use super::PageInput;
-use super::chart::{ALL, DIRECTIONS, axis, categories, cause_colour, chart, line, percent_axis, shown, stacked, words};
+use super::chart::{ALL, DIRECTIONS, axis, cause_colour, chart, line, percent_axis, shown, stacked, words};
 use super::figure::{Figure, Panel};
+use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::LatencyHistogram;
 use crate::report::number;
@@ -31,17 +32,18 @@ pub fn lost(input: &PageInput) -> Figure {
         row.extend(fates.lost.0.iter().map(|(_, frames)| Cell::from(*frames)));
         table.rows.push(row);
     }
-    let mut plot = stacked(axis("share of copies offered").tick_suffix(" %"), categories(""));
-    let names: Vec<String> = rows.iter().rev().map(|(name, _)| words(name)).collect();
-    // A cause that took nothing has no place in the legend; but a chart must have something to show.
+    let readable: Vec<String> = rows.iter().map(|(name, _)| name.replace('_', " ")).collect();
+    let names = Names::of(readable.iter().map(String::as_str));
+    let mut plot = stacked(axis("share of copies offered").tick_suffix(" %"), names.down());
+    // A cause that took nothing has no place in the legend.
     let took = |cause: usize| frames.total.lost.0.get(cause).is_some_and(|(_, lost)| *lost > 0);
     let any = (0..causes.len()).any(took);
-    for (cause, name) in causes.iter().enumerate().filter(|(cause, _)| took(*cause) || !any) {
+    for (cause, name) in causes.iter().enumerate().filter(|(cause, _)| took(*cause)) {
         let share = |(_, fates): &(&str, &crate::metrics::summary::Fates)| {
             let lost = fates.lost.0.get(cause).map_or(0, |(_, frames)| *frames);
             shown(100.0 * lost as f64 / fates.offered.max(1) as f64)
         };
-        let bars = Bar::new(rows.iter().rev().map(share).collect(), names.clone())
+        let bars = Bar::new(rows.iter().map(share).collect(), names.all())
             .name(words(name))
             .orientation(Orientation::Horizontal)
             .marker(Marker::new().color(cause_colour(cause)))
@@ -59,7 +61,12 @@ pub fn lost(input: &PageInput) -> Figure {
             number::count(total),
             number::count(frames.total.offered)
         ),
-        panels: vec![Panel::of_rows("", plot, rows.len())],
+        panels: vec![if any {
+            Panel::of_rows("", plot, rows.len())
+        } else {
+            Panel::words("", "No copy was lost.")
+        }],
+        key: Vec::new(),
         table,
     }
 }
@@ -102,7 +109,12 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
             input.in_trials(),
             if wide { " Mind the logarithmic axis." } else { "" }
         ),
-        panels: vec![Panel::new("", plot)],
+        panels: vec![if least == most {
+            Panel::words("", format!("Every copy took {}.", number::seconds(least.as_secs())))
+        } else {
+            Panel::new("", plot)
+        }],
+        key: Vec::new(),
         table,
     })
 }

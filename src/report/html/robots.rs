@@ -6,7 +6,7 @@ use plotly::layout::{AxisRange, HoverMode};
 
 use super::PageInput;
 use super::bandwidth::WAYS;
-use super::chart::{DIRECTIONS, Points, axis, band, chart, line, percent_axis, shown};
+use super::chart::{DIRECTIONS, Points, axis, band, chart, line, one_value, percent_axis, shown};
 use super::data::Spread;
 use super::figure::{Figure, Panel};
 use super::table::DataTable;
@@ -71,7 +71,7 @@ pub fn distribution(input: &PageInput) -> Figure {
             )
             .show_legend(false),
         );
-        panels.push(Panel::new(heading, plot));
+        panels.push(panel(heading, plot, &trials));
     }
     Figure {
         id: "bytes-by-robot".into(),
@@ -87,7 +87,16 @@ pub fn distribution(input: &PageInput) -> Figure {
             }
         ),
         panels,
+        key: Vec::new(),
         table,
+    }
+}
+
+/// The chart, unless all robots of all trials carry the same.
+fn panel(heading: &'static str, plot: plotly::Plot, trials: &[Vec<f64>]) -> Panel {
+    match one_value(trials.iter().flatten().copied()) {
+        Some(value) => Panel::words(heading, format!("{} B/step, each of them.", number::figure(value))),
+        None => Panel::new(heading, plot),
     }
 }
 
@@ -146,7 +155,7 @@ pub fn by_number(input: &PageInput) -> Option<Figure> {
         let x = axis("robot").range(AxisRange::new(-1.0, robots as f64));
         let mut plot = chart(x, axis("B/step"), HoverMode::Closest);
         plot.add_trace(marks);
-        panels.push(Panel::new(heading, plot));
+        panels.push(panel(heading, plot, &trials));
     }
     Some(Figure {
         id: "bytes-by-robot-number".into(),
@@ -155,6 +164,7 @@ pub fn by_number(input: &PageInput) -> Option<Figure> {
                   that stands out in every trial has a burden by its task, not by chance."
             .to_owned(),
         panels,
+        key: Vec::new(),
         table,
     })
 }
@@ -207,6 +217,7 @@ pub fn lorenz(input: &PageInput) -> Figure {
             words.join(" and ")
         ),
         panels: vec![Panel::new("", plot)],
+        key: Vec::new(),
         table,
     }
 }

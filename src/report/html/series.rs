@@ -4,12 +4,14 @@ use plotly::common::LineShape;
 use plotly::layout::HoverMode;
 
 use super::PageInput;
-use super::chart::{ALL, Points, axis, band, chart, line, topic_colour};
+use super::chart::{ALL, Points, axis, band, chart, line, one_value, topic_colour};
 use super::data::{Moment, over_time};
+use super::faults;
 use super::figure::{Figure, Panel};
 use super::table::{Cell, DataTable};
 use crate::engine::SimTime;
 use crate::metrics::{RobotBytes, SeriesEntry, TrialRecord};
+use crate::report::number;
 
 /// One way, in an entry of the series.
 type Way = fn(&SeriesEntry) -> &[RobotBytes];
@@ -62,6 +64,7 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
                 "%{x:.4g} s: %{y:.4g} B/step",
             ));
         }
+        faults::mark(&mut plot, input);
         panels.push(Panel::new(heading, plot));
     }
     Some(Figure {
@@ -69,10 +72,12 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
         title: "Bytes over time, by topic".into(),
         caption: format!(
             "What a robot sends and receives in a control step, headers included, mean over robots, from one sample to the next, topic by \
-             topic. {}",
-            input.band_words()
+             topic. {}{}",
+            input.band_words(),
+            faults::words(input)
         ),
         panels,
+        key: Vec::new(),
         table,
     })
 }
@@ -94,6 +99,11 @@ fn per_step(record: &TrialRecord, bytes: impl Fn(&SeriesEntry) -> Option<f64>) -
         Some((entry.at, bytes(entry)? / steps))
     });
     rates.collect()
+}
+
+/// The least and the most of each moment.
+fn ends(moments: &[Moment]) -> impl Iterator<Item = f64> {
+    moments.iter().flat_map(|moment| [moment.spread.min, moment.spread.max])
 }
 
 fn curves(moments: &[Moment]) -> [Points; 3] {
@@ -145,30 +155,40 @@ pub fn over_robots(input: &PageInput) -> Option<Figure> {
         for edge in band("robots", ALL, &low, &high, &LineShape::Linear) {
             plot.add_trace(edge);
         }
-        let median = line(
+        let middle_line = line(
             "median robot",
             ALL,
             &middle,
             LineShape::Linear,
             "%{x:.4g} s: median robot %{y:.4g} B/step<extra></extra>",
         );
-        plot.add_trace(median.show_legend(false));
+        plot.add_trace(middle_line.show_legend(false));
         let edges = [("robot with the most", &high), ("robot with the least", &low)];
         for (name, points) in edges {
             let hover = format!("%{{x:.4g}} s: {name} %{{y:.4g}} B/step<extra></extra>");
             let edge = line(name, "#8c8c8c", points, LineShape::Linear, &hover);
             plot.add_trace(edge.show_legend(false));
         }
-        panels.push(Panel::new(heading, plot));
+        faults::mark(&mut plot, input);
+        panels.push(match one_value(ends(&least).chain(ends(&most))) {
+            Some(value) => Panel::words(
+                heading,
+                format!("{} B/step of every robot at all times.", number::figure(value)),
+            ),
+            None => Panel::new(heading, plot),
+        });
     }
     Some(Figure {
         id: "series-over-robots".into(),
         title: "Bytes over time, from robot to robot".into(),
-        caption: "How far robots are apart in what they send and receive in a control step on all topics together, headers included: the \
-                  line is the median robot, the band reaches from the robot with the least to that with the most. Each is the median over the trials \
-                  that still run."
-            .to_owned(),
+        caption: format!(
+            "How far robots are apart in what they send and receive in a control step on all topics together, headers included: the \
+             line is the median robot, the band reaches from the robot with the least to that with the most. Each is the median over the trials \
+             that still run.{}",
+            faults::words(input)
+        ),
         panels,
+        key: Vec::new(),
         table,
     })
 }

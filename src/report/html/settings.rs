@@ -4,25 +4,36 @@ use plotly::Scatter;
 use plotly::common::{ErrorData, ErrorType, Marker, Mode};
 use plotly::layout::{Axis, HoverMode, RangeMode};
 
-use super::chart::{INK, axis, categories, chart, shown, words};
+use super::chart::{INK, axis, chart, escaped, one_value, shown};
 use super::figure::{Figure, Panel};
+use super::matrix;
+use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::Estimate;
 use crate::metrics::comparison::{Comparison, Pair, Verdict};
 use crate::metrics::figures::{self, Better};
-use crate::report::comparison::label;
+use crate::report::comparison::{family, label};
 use crate::report::number;
 
 const NEUTRAL: &str = "#0072b2";
-const BETTER: &str = "#009e73";
-const WORSE: &str = "#d55e00";
-const UNCLEAR: &str = "#8a8a8a";
+/// What is better, what is worse, and what shows no difference.
+pub const BETTER: &str = "#009e73";
+/// See [`BETTER`].
+pub const WORSE: &str = "#d55e00";
+/// See [`BETTER`].
+pub const UNCLEAR: &str = "#8a8a8a";
+
+/// Differences between settings, pair by pair, of which more than this are drawn as a table of all settings by all.
+const MOST_PAIRS: usize = 15;
 
 /// A named estimate on its line.
-struct Row {
-    name: String,
-    estimate: Estimate,
-    colour: &'static str,
+pub struct Row {
+    /// What it is of.
+    pub name: String,
+    /// The estimate.
+    pub estimate: Estimate,
+    /// Its colour.
+    pub colour: &'static str,
 }
 
 /// A figure's value in every setting.
@@ -58,7 +69,10 @@ pub fn by_setting(comparison: &Comparison, figure: &figures::Figure) -> Option<F
         id: format!("by-setting-{}", slug(&figure.key)).into(),
         title: format!("{} by setting", capital(&figure.name)).into(),
         caption,
-        panels: vec![forest(rows.collect(), near(&with_unit(figure)))],
+        panels: vec![forest(&rows.collect::<Vec<_>>(), near(&with_unit(figure)), |value| {
+            format!("{} is the same in every setting: {value}.", capital(&with_unit(figure)))
+        })],
+        key: Vec::new(),
         table,
     })
 }
@@ -87,40 +101,53 @@ pub fn differences(comparison: &Comparison, figure: &figures::Figure) -> Option<
         "gain by common random numbers",
     ]);
     table.rows.extend(pairs.iter().map(|pair| row(comparison, pair)));
-    let rows = pairs.iter().map(|pair| Row {
-        name: match comparison.reference {
-            Some(_) => label(comparison, &pair.setting).to_owned(),
-            None => format!(
-                "{} less {}",
-                label(comparison, &pair.setting),
-                label(comparison, &pair.against)
-            ),
-        },
-        estimate: pair.difference,
-        colour: colour(pair.verdict),
-    });
     let of = match &comparison.reference {
         Some(reference) => format!("Each setting less {}", label(comparison, reference)),
         None => "Settings less each other".to_owned(),
     };
-    let caption = format!(
-        "{of}, with the 95 % interval of the difference. Green is better, orange worse, at 5 % after Holm's adjustment over {} of the study; \
-         grey shows no difference, which does not mean that there is none.",
-        match comparison.pairs.len() {
-            1 => "the one test".to_owned(),
-            tests => format!("all {} tests", number::count(tests as u64)),
-        }
+    let judged = format!(
+        "Green is better, orange worse, at 5 %, {}; grey shows no difference, which does not mean that there is none.",
+        family(comparison)
     );
-    let axis = axis(&format!("difference, {}", unit(figure)))
-        .zero_line(true)
-        .zero_line_color(INK);
+    let (caption, panel) = if comparison.reference.is_none() && pairs.len() > MOST_PAIRS {
+        let caption = format!(
+            "The setting of each row less that of each column, in shares of the largest difference: the darker, the larger. {judged}"
+        );
+        (caption, matrix::pairs(comparison, &pairs))
+    } else {
+        let rows = pairs.iter().map(|pair| Row {
+            name: match comparison.reference {
+                Some(_) => label(comparison, &pair.setting).to_owned(),
+                None => format!(
+                    "{} less {}",
+                    label(comparison, &pair.setting),
+                    label(comparison, &pair.against)
+                ),
+            },
+            estimate: pair.difference,
+            colour: colour(pair.verdict),
+        });
+        let caption = format!("{of}, with the 95 % interval of the difference. {judged}");
+        let panel = forest(&rows.collect::<Vec<_>>(), difference_axis(figure), |value| {
+            format!("Every difference is {value}.")
+        });
+        (caption, panel)
+    };
     Some(Figure {
         id: format!("differences-{}", slug(&figure.key)).into(),
         title: format!("Differences in {}", figure.name).into(),
         caption,
-        panels: vec![forest(rows.collect(), axis)],
+        panels: vec![panel],
+        key: Vec::new(),
         table,
     })
+}
+
+/// An axis of differences in a figure, with its zero.
+pub fn difference_axis(figure: &figures::Figure) -> Axis {
+    axis(&format!("difference, {}", unit(figure)))
+        .zero_line(true)
+        .zero_line_color(INK)
 }
 
 fn row(comparison: &Comparison, pair: &Pair) -> Vec<Cell> {
@@ -151,14 +178,23 @@ pub(super) fn near(title: &str) -> Axis {
     axis(title).range_mode(RangeMode::Normal)
 }
 
-/// Estimates line by line, the first at the top.
-fn forest(rows: Vec<Row>, x: Axis) -> Panel {
-    let rows: Vec<Row> = rows.into_iter().rev().collect();
+/// Estimates line by line, the first at the top; or, where all have one value, what `alike` says of it.
+pub fn forest(rows: &[Row], x: Axis, alike: impl Fn(&str) -> String) -> Panel {
+    let ends = |row: &Row| {
+        let [low, high] = row.estimate.ci95;
+        [row.estimate.value, low, high].into_iter().flatten()
+    };
+    if rows.len() > 1
+        && let Some(value) = one_value(rows.iter().flat_map(ends))
+    {
+        return Panel::words("", alike(&number::figure(value)));
+    }
+    let names = Names::of(rows.iter().map(|row| row.name.as_str()));
     let estimates: Vec<Estimate> = rows.iter().map(|row| row.estimate).collect();
     let values = estimates
         .iter()
         .map(|estimate| shown(estimate.value.unwrap_or(f64::NAN)));
-    let marks = Scatter::new(values.collect(), rows.iter().map(|row| words(&row.name)).collect())
+    let marks = Scatter::new(values.collect(), names.all())
         .mode(Mode::Markers)
         .marker(
             Marker::new()
@@ -166,9 +202,10 @@ fn forest(rows: Vec<Row>, x: Axis) -> Panel {
                 .color_array(rows.iter().map(|row| row.colour).collect()),
         )
         .error_x(error_bars(&estimates))
+        .hover_text_array(rows.iter().map(|row| escaped(&row.name)).collect())
         .show_legend(false)
-        .hover_template("%{y}: %{x:.5g}<extra></extra>");
-    let mut plot = chart(x, categories(""), HoverMode::Closest);
+        .hover_template("%{hovertext}: %{x:.5g}<extra></extra>");
+    let mut plot = chart(x, names.down(), HoverMode::Closest);
     plot.add_trace(marks);
     Panel::of_rows("", plot, rows.len())
 }
@@ -193,7 +230,7 @@ pub(super) fn error_bars(estimates: &[Estimate]) -> ErrorData {
 }
 
 /// The value and its interval.
-fn cells(estimate: &Estimate) -> [Cell; 3] {
+pub fn cells(estimate: &Estimate) -> [Cell; 3] {
     [estimate.value.into(), estimate.ci95[0].into(), estimate.ci95[1].into()]
 }
 
@@ -204,19 +241,22 @@ fn cut_off(comparison: &Comparison, figure: &figures::Figure) -> bool {
     })
 }
 
-fn colour(verdict: Verdict) -> &'static str {
+/// The colour of a verdict.
+pub fn colour(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Better => BETTER,
         Verdict::Worse => WORSE,
-        Verdict::NoDetectableDifference | Verdict::NotComparable => UNCLEAR,
+        Verdict::NoDetectableDifference | Verdict::CannotTell | Verdict::NotComparable => UNCLEAR,
     }
 }
 
-fn verdict(verdict: Verdict) -> &'static str {
+/// A verdict in words.
+pub fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Better => "better",
         Verdict::Worse => "worse",
         Verdict::NoDetectableDifference => "no detectable difference",
+        Verdict::CannotTell => "cannot tell",
         Verdict::NotComparable => "not comparable",
     }
 }
@@ -228,7 +268,8 @@ pub(super) fn better(figure: &figures::Figure) -> &'static str {
     }
 }
 
-fn unit(figure: &figures::Figure) -> &str {
+/// A figure's unit in words.
+pub fn unit(figure: &figures::Figure) -> &str {
     match figure.unit.as_ref() {
         "1" => "a pure number",
         unit => unit,
@@ -250,7 +291,7 @@ pub(super) fn capital(text: &str) -> String {
 }
 
 /// A figure's key as part of a link: letters, digits and dashes.
-fn slug(key: &str) -> String {
+pub fn slug(key: &str) -> String {
     key.chars()
         .map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' })
         .collect()

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::figure::Figure;
 use super::page::{Section, document, numbered};
 use super::settings::{by_setting, capital, differences};
-use super::{mission, pareto};
+use super::{factors, mission, pareto};
 use crate::metrics::comparison::{Comparison, Setting};
 use crate::metrics::figures;
 use crate::report::comparison::{compared, fitted, stopping};
@@ -50,9 +50,11 @@ fn sections(comparison: &Comparison) -> Vec<Section> {
     let of_figure = |figure: &figures::Figure| Section {
         id: figure.key.clone().into(),
         title: capital(&figure.name).into(),
-        figures: [by_setting(comparison, figure), differences(comparison, figure)]
+        figures: by_setting(comparison, figure)
             .into_iter()
-            .flatten()
+            .chain(factors::effects(comparison, figure))
+            .chain(factors::interactions(comparison, figure))
+            .chain(differences(comparison, figure))
             .collect(),
     };
     let whole = |id: &'static str, title: &'static str, figure: Option<Figure>| Section {
@@ -103,10 +105,17 @@ fn overview(comparison: &Comparison) -> Markup {
 
 /// Every difference in a sentence.
 fn in_words(comparison: &Comparison) -> Markup {
+    let effects = comparison.effects.iter().map(|effect| effect.words.as_str());
+    let interactions = comparison
+        .interactions
+        .iter()
+        .map(|interaction| interaction.words.as_str());
+    let pairs = comparison.pairs.iter().map(|pair| pair.words.as_str());
+    let words = effects.chain(interactions).chain(pairs);
     html! {
         details {
             summary { "Every difference in words" }
-            ul { @for pair in comparison.pairs.iter().filter(|pair| !pair.words.is_empty()) { li { (pair.words) } } }
+            ul { @for words in words.filter(|words| !words.is_empty()) { li { (words) } } }
         }
     }
 }

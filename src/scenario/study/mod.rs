@@ -6,6 +6,7 @@
 mod design;
 mod figures;
 mod plan;
+mod power;
 mod problems;
 mod text;
 

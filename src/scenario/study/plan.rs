@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::design::{combinations, is_name, labels, name};
 use super::{Study, figures};
 use crate::scenario::checks::Problem;
-use crate::scenario::file::{contents, load, question};
+use crate::scenario::file::{contents, question};
 use crate::scenario::path::{FieldPath, follow};
 use crate::scenario::read::{between, document};
-use crate::scenario::report::{Diagnostic, Place, Report};
-use crate::scenario::{Override, Scenario, limits, parse, tree};
+use crate::scenario::report::{Diagnostic, Place, Report, Warnings};
+use crate::scenario::{Override, Scenario, examine, limits, parse, tree};
 
 /// What is to be run and compared.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +31,12 @@ pub struct Plan {
     pub relevant: f64,
     /// Keys of two figures in whose plane settings are drawn.
     pub pareto: Option<[String; 2]>,
+    /// Most trials that a setting may come to, if they are added as it runs.
+    pub most_trials: Option<u32>,
+    /// Where the number of trials stands, if it is a study's own.
+    pub trials_place: Option<Place>,
+    /// What looks wrong with the study as a whole.
+    pub warnings: Warnings,
 }
 
 /// A setting: a level of each factor.
@@ -42,6 +48,8 @@ pub struct Setting {
     pub levels: Vec<String>,
     /// The whole scenario.
     pub scenario: Scenario,
+    /// What looks wrong with it.
+    pub warnings: Warnings,
 }
 
 impl Setting {
@@ -85,14 +93,17 @@ pub fn load_study(path: &Path) -> Result<Plan, Report> {
         reference: settings.iter().position(|setting| setting.levels == study.reference),
         relevant: study.relevant.get(),
         pareto: study.pareto.clone().map(|(x, y)| [x, y]),
+        most_trials: None,
+        trials_place: file.diagnose(Problem::new("trials", "", "")).place,
+        warnings: Warnings::default(),
         settings,
     };
     let problems = figures::problems(&plan, study.also.len());
     if problems.is_empty() {
         Ok(plan)
     } else {
-        let diagnostics = problems.into_iter().map(|problem| file.diagnose(problem)).collect();
-        Err(Report { diagnostics })
+        let diagnostics: Vec<_> = problems.into_iter().map(|problem| file.diagnose(problem)).collect();
+        Err(Report::from(diagnostics))
     }
 }
 
@@ -104,11 +115,13 @@ pub fn plan_of_files<P: AsRef<Path>>(files: &[P]) -> Result<Plan, Report> {
     let mut diagnostics = Vec::new();
     let mut settings: Vec<Setting> = Vec::new();
     for file in files {
-        match load(file.as_ref(), &[]) {
-            Ok(scenario) => settings.push(Setting {
+        let read = contents(file.as_ref());
+        match read.and_then(|text| examine(&file.as_ref().display().to_string(), &text, &[])) {
+            Ok((scenario, warnings)) => settings.push(Setting {
                 name: scenario.name.clone(),
                 levels: vec![scenario.name.clone()],
                 scenario,
+                warnings,
             }),
             Err(report) => diagnostics.extend(report.diagnostics),
         }
@@ -124,7 +137,7 @@ pub fn plan_of_files<P: AsRef<Path>>(files: &[P]) -> Result<Plan, Report> {
     };
     diagnostics.extend(settings.iter().enumerate().filter_map(twice));
     if !diagnostics.is_empty() {
-        return Err(Report { diagnostics });
+        return Err(Report::from(diagnostics));
     }
     let names: Vec<String> = settings.iter().map(|setting| setting.name.clone()).collect();
     let joined = names.join("-vs-");
@@ -137,6 +150,9 @@ pub fn plan_of_files<P: AsRef<Path>>(files: &[P]) -> Result<Plan, Report> {
         reference: None,
         relevant: 0.05,
         pareto: None,
+        most_trials: None,
+        trials_place: None,
+        warnings: Warnings::default(),
     };
     plan.figures = figures::usual(&plan);
     Ok(plan)
@@ -164,8 +180,51 @@ impl Plan {
         if diagnostics.is_empty() {
             Ok(self)
         } else {
-            Err(Report { diagnostics })
+            Err(Report::from(diagnostics))
         }
+    }
+
+    /// What looks wrong with the study and with its settings; what does with several of them is said once.
+    #[must_use]
+    pub fn all_warnings(&self) -> Warnings {
+        let mut found: Vec<(Diagnostic, Vec<&Setting>)> = Vec::new();
+        for setting in &self.settings {
+            for diagnostic in &setting.warnings.diagnostics {
+                match found.iter_mut().find(|(known, _)| known == diagnostic) {
+                    Some((_, settings)) => settings.push(setting),
+                    None => found.push((diagnostic.clone(), vec![setting])),
+                }
+            }
+        }
+        let said = found.into_iter().map(|(diagnostic, settings)| {
+            let whose = match &settings[..] {
+                all if all.len() == self.settings.len() => String::new(),
+                [one] => format!("setting {}: ", one.label()),
+                [first, others @ ..] => format!("setting {} and {} more: ", first.label(), others.len()),
+                [] => String::new(),
+            };
+            Diagnostic {
+                message: format!("{whose}{}", diagnostic.message),
+                ..diagnostic
+            }
+        });
+        let few = self.too_few_trials();
+        let whole = self.warnings.diagnostics.iter().cloned().chain(few);
+        let mut diagnostics: Vec<Diagnostic> = whole.chain(said).collect();
+        let beyond = diagnostics.len().saturating_sub(limits::DIAGNOSTICS);
+        diagnostics.truncate(limits::DIAGNOSTICS);
+        let unplaced = self.settings.iter().map(|setting| setting.warnings.more);
+        Warnings {
+            diagnostics,
+            more: self.warnings.more + beyond + unplaced.max().unwrap_or(0),
+        }
+    }
+
+    /// Adds trials until there are `most` of each setting, or enough.
+    #[must_use]
+    pub fn with_most_trials(mut self, most: u32) -> Self {
+        self.most_trials = Some(most);
+        self
     }
 
     /// Runs so many trials of each setting instead.
@@ -174,6 +233,7 @@ impl Plan {
         for setting in &mut self.settings {
             setting.scenario.trials = trials;
         }
+        self.trials_place = None;
         self
     }
 }
@@ -191,8 +251,8 @@ impl File<'_> {
         let mut found: Vec<(Vec<String>, Diagnostic)> = Vec::new();
         for combination in combinations(study) {
             let labels = labels(study, &combination);
-            match parse(base, base_text, &self.overrides(study, &combination)) {
-                Ok(scenario) => settings.push(Setting {
+            match examine(base, base_text, &self.overrides(study, &combination)) {
+                Ok((scenario, warnings)) => settings.push(Setting {
                     name: name(&labels),
                     scenario: Scenario {
                         name: name(&labels),
@@ -201,6 +261,7 @@ impl File<'_> {
                         ..scenario
                     },
                     levels: labels,
+                    warnings,
                 }),
                 Err(report) => {
                     for diagnostic in report.diagnostics {
@@ -215,6 +276,7 @@ impl File<'_> {
         if found.is_empty() {
             return Ok(settings);
         }
+        let more = found.len().saturating_sub(limits::DIAGNOSTICS);
         found.truncate(limits::DIAGNOSTICS);
         let said = found.into_iter().map(|(labels, diagnostic)| Diagnostic {
             message: format!("setting {}: {}", labels.join(", "), diagnostic.message),
@@ -222,6 +284,7 @@ impl File<'_> {
         });
         Err(Report {
             diagnostics: said.collect(),
+            more,
         })
     }
 
@@ -250,9 +313,7 @@ impl File<'_> {
             let help = "give the path of a scenario file, relative to the study file";
             self.diagnose(Problem::new(field, diagnostic.message, help))
         });
-        Report {
-            diagnostics: diagnostics.collect(),
-        }
+        Report::from(diagnostics.collect::<Vec<_>>())
     }
 
     fn diagnose(&self, problem: Problem) -> Diagnostic {

@@ -4,6 +4,7 @@ mod gossip;
 mod healing;
 
 use super::*;
+use crate::protocol::control::PhaseConfig;
 use crate::protocol::{Frame, MessageSize, TimerId};
 use rand_philox::Philox;
 
@@ -18,7 +19,8 @@ fn robots(targets: u8) -> Vec<Backbone> {
 }
 
 fn robots_with(targets: u8, gossip: &GossipConfig) -> Vec<Backbone> {
-    let config = ron::from_str(&format!("(targets: Ring(count: {targets}, radius: 4.5))")).unwrap();
+    let config = format!("(targets: Ring(count: {targets}, radius: 4.5), healing: (reserve: 2))");
+    let config = ron::from_str(&config).unwrap();
     let poses: Vec<Pose> = [0.0, 1.2, 0.7, 0.4]
         .map(|x| Pose {
             position: Vec2::new(x, 0.0),
@@ -29,7 +31,10 @@ fn robots_with(targets: u8, gossip: &GossipConfig) -> Vec<Backbone> {
         &config,
         gossip,
         &DetectorConfig::default(),
-        Span::from_secs(0.1),
+        &ControlConfig {
+            phase: PhaseConfig::Together,
+            ..ControlConfig::default()
+        },
         &poses,
         Streams::new(1, 0),
     )
@@ -49,8 +54,12 @@ impl Bench {
     }
 
     fn with(gossip: &GossipConfig, robot: u32, x: f64) -> Self {
+        Self::of(robots_with(1, gossip).remove(robot as usize), x)
+    }
+
+    fn of(robot: Backbone, x: f64) -> Self {
         Self {
-            robot: robots_with(1, gossip).remove(robot as usize),
+            robot,
             x,
             y: 0.0,
             sequence: 0,

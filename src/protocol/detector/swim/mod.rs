@@ -32,18 +32,18 @@ use rand_philox::Philox;
 
 use super::{Circumstances, Monitored, Sign, TIMER};
 use crate::engine::{ActorId, SimTime, Span};
+use crate::protocol::control::{Phases, Rhythm};
 use crate::protocol::{Evidence, Output, Reception};
 use gossip::Gossip;
 use members::{Belief, Member, Members};
-
-/// Fractional part of the golden ratio: its multiples spread evenly.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// One robot's side of SWIM.
 #[derive(Debug)]
 pub struct Swim {
     id: ActorId,
     interval: Span,
+    /// From the first robot heard until the first ping.
+    phase: Span,
     timeout: Span,
     /// What the interval leaves to others once they are asked.
     patience: Span,
@@ -92,12 +92,14 @@ struct Errand {
 
 impl Swim {
     /// The side of robot `id`, which knows nobody yet.
-    pub fn new(config: &SwimConfig, circumstances: Circumstances, id: ActorId) -> Self {
+    pub fn new(config: &SwimConfig, circumstances: Circumstances, phases: Phases, id: ActorId) -> Self {
         let robots = circumstances.robots;
         let (interval_s, timeout_s) = (config.probe_interval.get(), config.probe_timeout.get());
+        let interval = Span::from_secs(interval_s);
         Self {
             id,
-            interval: Span::from_secs(interval_s),
+            interval,
+            phase: phases.span(id, Rhythm::Probe, interval),
             timeout: Span::from_secs(timeout_s),
             patience: Span::from_secs(interval_s - timeout_s),
             leave: Span::from_secs(config.leave_timeout.get()),
@@ -162,16 +164,15 @@ impl Swim {
         self.arm(output);
     }
 
-    /// Begins to probe, if it has not yet: robots start at different times, which their ids spread over an interval.
+    /// Begins to probe, if it has not yet, at the robot's phase of its interval.
     fn begin(&mut self, now: SimTime) {
         if self.probe.is_none() {
-            let phase = (f64::from(self.id.0) * GOLDEN).fract();
             self.probe = Some(Ongoing {
                 target: None,
                 number: self.number,
                 acknowledged: true,
                 ask: SimTime::NEVER,
-                end: now + Span::from_secs(phase * self.interval.as_secs()),
+                end: now + self.phase,
             });
         }
     }

@@ -1,6 +1,8 @@
 //! One robot's side of SWIM, handed frames one by one.
 
 use super::*;
+use crate::engine::Streams;
+use crate::protocol::control::PhaseConfig;
 use crate::protocol::{Frame, MessageSize, Note};
 use crate::quantity::{NonNegative, Positive};
 
@@ -49,14 +51,19 @@ fn news(about: ActorId, claim: Claim, incarnation: u32) -> News {
 }
 
 impl Bench {
-    /// Robot 0, whose phase is 0, has heard robots 1 and 2 at time 0: it pings for the first time then.
+    /// Robot 0, whose phase is 0 as that of all, has heard robots 1 and 2 at time 0: it pings for the first time then.
     fn new(config: &SwimConfig) -> Self {
         let circumstances = Circumstances {
             robots: 10,
             status_interval: Span::from_secs(1.0),
         };
         let mut bench = Self {
-            swim: Swim::new(config, circumstances, ME),
+            swim: Swim::new(
+                config,
+                circumstances,
+                Phases::new(PhaseConfig::Together, Streams::new(1, 0)),
+                ME,
+            ),
             sequence: 0,
             said: Vec::new(),
             notes: Vec::new(),
