@@ -73,7 +73,7 @@ impl Lost {
 }
 
 impl StatusLog {
-    /// An empty log that reaches back `memory`.
+    /// An empty log that reaches back `memory`; zero where no suspicion will ever be traced.
     pub fn new(robots: usize, memory: Span) -> Self {
         Self {
             memory,
@@ -95,6 +95,9 @@ impl StatusLog {
 
     /// `sender` sends a status, its frame number `sequence`.
     pub fn sent(&mut self, now: SimTime, sender: ActorId, sequence: u32) {
+        if self.memory == Span::ZERO {
+            return;
+        }
         let sender = &mut self.senders[sender.index()];
         // What is too old goes half a memory at a time, so that a push is mostly a push.
         if sender.since + self.memory + self.memory / 2 < now {
@@ -110,6 +113,9 @@ impl StatusLog {
     /// The copy of a status that was meant for `receiver` is lost.
     #[inline]
     pub fn lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {
+        if self.memory == Span::ZERO {
+            return;
+        }
         let lost = &mut self.senders[sender.index()].lost;
         lost.push(Lost::new(receiver, sequence, cause));
     }

@@ -8,7 +8,8 @@
 //! What an observer believes as the two meet is what it had heard, or not, before they did. So a pair that has come into range in
 //! the course of a run is monitored once it has been there for as long as the detector waits for a status
 //! ([`usual_silence`](crate::protocol::detector::DetectorConfig::usual_silence)); a subject that is still suspected then has not
-//! been heard for all that time, and is mistaken for a failed one from then on. Robots that are in range from the start count as
+//! been heard for all that time, and is mistaken for a failed one from then on, and so is one that is heard for the first time later
+//! than that. Robots that are in range from the start count as
 //! having been so for long.
 //!
 //! A suspicion is *right* if the subject cannot send at that instant. Otherwise it is *out of range* if the two are, or were while

@@ -30,6 +30,8 @@ pub struct Scorer {
     patience: Span,
     ranges: Ranges,
     health: Vec<Health>,
+    /// When the health of each robot last changed.
+    changed: Vec<SimTime>,
     /// When each robot could not send; the last stretch may be open.
     silences: Vec<Vec<(SimTime, SimTime)>>,
     /// By observer: whom it watches.
@@ -85,6 +87,7 @@ impl Scorer {
             patience: watching.patience,
             ranges: Ranges::new(watching.range),
             health: vec![Health::WELL; robots],
+            changed: vec![SimTime::ZERO; robots],
             silences: vec![Vec::new(); robots],
             pairs: std::iter::repeat_with(Vec::new).take(robots).collect(),
             watchers: vec![Vec::new(); robots],
@@ -217,12 +220,23 @@ impl Scorer {
         let mut pair = Pair {
             subject,
             since: SimTime::NEVER,
-            settled: met.map_or(SimTime::ZERO, |met| met + self.patience),
+            settled: met.map_or(SimTime::ZERO, |met| {
+                let able = [observer, subject].map(|robot| self.changed[robot.index()]);
+                met.max(able[0]).max(able[1]) + self.patience
+            }),
             suspicion: None,
             mistaken: false,
             failure: None,
         };
-        pair.resume(now, self.is_able(observer, subject));
+        let able = self.is_able(observer, subject);
+        if met.is_some() && able {
+            // In range for that long before it was heard for the first time.
+            pair.mistaken = true;
+            pair.since = pair.settled.min(now);
+            pair.settle(now, &mut self.tally);
+            pair.mistaken = false;
+        }
+        pair.resume(now, able);
         self.pairs[observer.index()].push(pair);
         self.watchers[subject.index()].push(observer);
     }
@@ -254,6 +268,7 @@ impl Scorer {
     /// `robot` can do from `now` on what `health` says.
     pub fn fault(&mut self, now: SimTime, robot: ActorId, health: Health) {
         self.cross_until(now);
+        self.changed[robot.index()] = now;
         let before = std::mem::replace(&mut self.health[robot.index()], health);
         if before.sends != health.sends {
             let silences = &mut self.silences[robot.index()];
