@@ -22,6 +22,7 @@ fn report_with(records: &[TrialRecord], surprises: &[Surprise], colour: bool) ->
         ),
         summary: &Summary::of("loss20", &TOPICS, &ROLES, records),
         control_period_s: 0.1,
+        detects: true,
         surprises,
         speed: Speed {
             simulated_s: 2100.0,
@@ -90,6 +91,30 @@ fn what_is_not_as_predicted_has_a_section_of_its_own() {
         .and_then(|rest| rest.split("\nRun\n").next());
     insta::assert_snapshot!(section.unwrap());
     assert!(report.lines().all(|line| line.chars().count() <= 80), "{report}");
+}
+
+#[test]
+fn a_report_of_robots_without_a_failure_detector_says_so_instead_of_figures() {
+    let summary = Summary::of("bare", &TOPICS, &ROLES, &records(2));
+    let text = terminal(&Input {
+        question: None,
+        summary: &summary,
+        control_period_s: 0.1,
+        detects: false,
+        surprises: &[],
+        speed: Speed {
+            simulated_s: 1.0,
+            delivered: 1,
+            wall_s: 1.0,
+        },
+        folder: Path::new("results/bare"),
+        files: &[],
+        colour: false,
+    });
+    assert!(
+        text.contains("none: robots ran no failure detector") && !text.contains("suspicions"),
+        "{text}"
+    );
 }
 
 #[test]
