@@ -334,7 +334,7 @@ class Folder:
         times = self.completion()
         completed = sum(done for _, done in times)
         digests = b"".join(int(digest, 16).to_bytes(16, "little") for digest in self.trials["digest"])
-        least = list(self.samples(lambda rows: rows["lambda2"].min()))
+        least = list(self.samples(lambda rows: rows.filter((pl.col("components") > 1) | (pl.col("lambda2") > 0))["lambda2"].min()))
         sent, received = (self.per_step(self.bandwidth.filter(direction=d)) for d in ("tx", "rx"))
         return {
             "trials": len(self.trials),
@@ -355,7 +355,7 @@ class Folder:
             },
             "load_imbalance": {"tx": mean([gini(t) for t in sent]), "rx": mean([gini(t) for t in received])},
             "lambda2_min": {**median(least), "min": min((v for v in least if v is not None), default=None)},
-            "connected_share": share(list(self.samples(lambda rows: (rows["components"] == 1).sum() / len(rows)))),
+            "connected_share": share(list(self.samples(lambda rows: (rows["components"] == 1).sum() / live if (live := (rows["components"] > 0).sum()) else None))),
             "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]]),
             **self.failures(),
             **self.mending(),

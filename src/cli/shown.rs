@@ -10,6 +10,7 @@ use crate::export::{self, StudyFolder, TrialEntry};
 use crate::metrics::Summary;
 use crate::metrics::comparison::Comparison;
 use crate::predict;
+use crate::protocol::detector::DetectorConfig;
 use crate::report::{self, Speed};
 use crate::scenario::Scenario;
 
@@ -60,6 +61,7 @@ impl Finished<'_> {
             question: self.question.as_deref(),
             summary: self.summary,
             control_period_s: self.scenario.control.period.get(),
+            detects: self.scenario.detector != DetectorConfig::None,
             surprises: &predict::surprises(self.scenario, self.summary),
             speed: Speed {
                 simulated_s: trials.iter().map(|trial| trial.simulated_s).sum(),

@@ -60,20 +60,24 @@ pub struct TrialRecord {
 }
 
 impl TrialRecord {
-    /// The least λ₂ over the samples; `None` without a sample.
+    /// The least λ₂ over the samples that find two live robots or more; `None` if none does.
     #[must_use]
     pub fn lambda2_min(&self) -> Option<f64> {
         self.connectivity
             .iter()
+            .filter(|sample| sample.has_two())
             .map(|sample| sample.lambda2)
             .min_by(f64::total_cmp)
     }
 
-    /// Share of the samples that find the swarm in one piece; `None` without a sample.
+    /// Share of the samples that find the live robots in one piece, of those that find any; `None` if none does.
     #[must_use]
     pub fn connected_share(&self) -> Option<f64> {
-        let connected = self.connectivity.iter().filter(|sample| sample.components == 1).count();
-        (!self.connectivity.is_empty()).then(|| connected as f64 / self.connectivity.len() as f64)
+        let count = |counts: fn(&ConnectivitySample) -> bool| {
+            self.connectivity.iter().filter(|sample| counts(sample)).count() as f64
+        };
+        let any = count(|sample| sample.components > 0);
+        (any > 0.0).then(|| count(|sample| sample.components == 1) / any)
     }
 
     /// Each robot's bytes a control step, of whatever `bytes` takes from its rows; a robot without traffic counts with 0.
@@ -329,6 +333,14 @@ pub struct ConnectivitySample {
     pub roles: Vec<u32>,
     /// Vertex-disjoint chains from each target's worker to the root, nl(t) of paper eq. 5, in order of targets.
     pub links: Vec<u32>,
+}
+
+impl ConnectivitySample {
+    /// Whether there were two live robots or more: then either there are as many pieces, or λ₂ is above 0.
+    #[must_use]
+    pub fn has_two(&self) -> bool {
+        self.components > 1 || self.lambda2 > 0.0
+    }
 }
 
 /// Traffic from one sample to the next, headers included: on each topic, in order of topics, then on all together.

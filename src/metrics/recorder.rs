@@ -3,13 +3,14 @@
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::{Change, Subject};
 use crate::geometry::{Pose, Vec2};
-use crate::protocol::{CompletionConfig, MessageSize, Note, Reception, Topic};
+use crate::motion::World;
+use crate::protocol::{CompletionConfig, MessageSize, Note, Topic};
 use crate::radio::LossCause;
 
 use super::completion::{Hearing, Judge, Progress};
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
-use super::detection::{CopyFate, Scorer, StatusTrace};
+use super::detection::{CopyFate, Inbox, Scorer, StatusTrace, Watching};
 use super::faults::Failures;
 use super::healing::Healing;
 use super::latency::LatencyHistogram;
@@ -43,6 +44,8 @@ pub struct Layout {
     pub completion: CompletionConfig,
     /// How far back a suspicion is traced to the statuses that were missed.
     pub status_memory: Span,
+    /// How long the robots' failure detector waits for a status before it suspects.
+    pub patience: Span,
     /// The robot whose statuses are followed one by one, if any.
     pub trace: Option<ActorId>,
 }
@@ -114,7 +117,14 @@ impl Recorder {
             reports: Reports::new(layout.robots),
             failures: Failures::new(layout.robots),
             healing: Healing::new(layout.topics),
-            detection: Scorer::new(layout.robots, layout.status_memory),
+            detection: Scorer::new(
+                layout.robots,
+                Watching {
+                    memory: layout.status_memory,
+                    patience: layout.patience,
+                    range: layout.radio_range,
+                },
+            ),
             trace: layout.trace.map(StatusTrace::new),
             judge: layout
                 .mission
@@ -227,12 +237,17 @@ impl Recorder {
         }
     }
 
-    /// `observer` may have reported a belief about another robot, with the frames in `waiting` on their way to it.
+    /// `observer` may have reported a belief about another robot, with these frames at hand.
     ///
     /// # Panics
     /// If it believes something of a robot that it does not watch.
-    pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, waiting: &[Reception<M>]) {
-        self.detection.belief(now, observer, note, waiting);
+    pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, inbox: Inbox<'_, M>) {
+        self.detection.belief(now, observer, note, inbox);
+    }
+
+    /// Robots go on to where `world` says, at each of its ticks.
+    pub fn tick(&mut self, world: &World) {
+        self.detection.tick(world);
     }
 
     /// Where the statuses of `sender` are followed one by one, if they are.
@@ -401,6 +416,7 @@ mod tests {
             rumors: 0,
             completion: CompletionConfig::default(),
             status_memory: Span::from_secs(8.0),
+            patience: Span::from_secs(4.0),
             trace: None,
         };
         Recorder::new(layout, &MetricsConfig::default())

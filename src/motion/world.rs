@@ -18,6 +18,7 @@ const TOUCH: f64 = 1e-6;
 pub struct World {
     now: SimTime,
     tick: Span,
+    max_travel: f64,
     body_radius: f64,
     proximity_range: f64,
     arena: Arena,
@@ -58,6 +59,7 @@ impl World {
         let mut world = Self {
             now: SimTime::ZERO,
             tick,
+            max_travel: max_speed * tick.as_secs(),
             body_radius,
             proximity_range,
             arena: Arena::new(arena),
@@ -123,6 +125,24 @@ impl World {
         if moved || self.moving {
             self.index();
         }
+    }
+
+    /// Whether any robot changes place on the way to the next tick.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        self.moving
+    }
+
+    /// How far a robot gets from one tick to the next at most, metres.
+    #[must_use]
+    pub fn max_travel(&self) -> f64 {
+        self.max_travel
+    }
+
+    /// Where robot `id` was at the last tick, metres from the arena's centre, and its velocity until the next one, m/s.
+    #[must_use]
+    pub fn course(&self, id: ActorId) -> (Vec2, Vec2) {
+        (self.positions[id.index()], self.velocities[id.index()])
     }
 
     /// Asks for where robot `id` is.

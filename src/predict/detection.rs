@@ -1,17 +1,15 @@
 //! How well the failure detector will do.
 
+use super::reading::Reading;
 use super::scene::Scene;
 use super::timeout::{Mistakes, Timeout};
 use super::{Holds, Prediction, Preflight};
-use crate::protocol::control::{PhaseConfig, WakeConfig};
+use crate::protocol::control::PhaseConfig;
 use crate::protocol::detector::DetectorConfig;
 use crate::radio::LossConfig;
 
 /// Share of statuses that may overtake each other before the formulas no longer hold.
 const OVERTAKEN: f64 = 1e-3;
-/// Share of the reading delay by which it may be off: a robot that its timer wakes reads a little earlier.
-const READING: f64 = 0.1;
-const QUANTILES: u32 = 200;
 
 pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
     if let Err(why) = figures(scene, preflight) {
@@ -45,7 +43,8 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
     };
     let model = Model::of(scene);
     let ends = ends(scene, detector.silence());
-    let reading = reading_delay(scene);
+    let neighbours = preflight.get("degree").map(|degree| degree.value);
+    let reading = Reading::of(scene, &detector, radio.loss.chain(range, range), neighbours);
     let nfd_s = match scene.scenario.detector {
         DetectorConfig::NfdS(_) => "; NFD-S: TO = η + δ − d",
         _ => "",
@@ -72,8 +71,8 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
         model.rate,
         pair,
     );
-    if rate > 0.0 {
-        let recurrence = 1.0 / rate;
+    let recurrence = 1.0 / rate;
+    if recurrence.is_finite() {
         push(
             "mistake_recurrence_s",
             "time between mistakes",
@@ -88,20 +87,20 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
         push(
             "mistake_duration_s",
             "duration of a mistake",
-            share / rate + reading,
+            share / rate + reading.mean,
             "s",
-            varies + READING * reading,
+            varies + reading.accuracy,
             model.duration,
             "until the observer reads the next status",
         );
     }
-    let mistaken = share + rate * reading;
+    let mistaken = share + rate * reading.mean;
     push(
         "query_accuracy",
         "query accuracy",
         1.0 - mistaken,
         "1",
-        mistaken * ends + rate * READING * reading,
+        mistaken * ends + rate * reading.accuracy,
         "1 − duration / time between mistakes",
         pair,
     );
@@ -110,8 +109,11 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
         "time to detect a failure",
         time,
         "s",
-        // When in an interval a robot fails is the scenario's: off by half an interval at most.
-        scene.interval_s() / 2.0,
+        match scene.scenario.control.phase {
+            PhaseConfig::Random => 0.0,
+            // When in an interval a robot fails is the scenario's: off by half an interval at most.
+            PhaseConfig::Together => scene.interval_s() / 2.0,
+        },
         "E[(TO + d − U − Kη)⁺] ≈ TO + d − η(½ + p/(1−p))",
         "it fails at any time of its interval; TO + d at most",
     );
@@ -126,6 +128,7 @@ fn detector(scene: &Scene<'_>) -> Result<Timeout, &'static str> {
     match detector {
         DetectorConfig::Timeout(_) => Ok(Timeout::from_arrival(scene.interval_s(), silence, latency)),
         DetectorConfig::NfdS(_) => Ok(Timeout::from_sending(scene.interval_s(), silence, latency)),
+        DetectorConfig::None => Err("robots run no failure detector: nobody is suspected, and no failure is noticed"),
         DetectorConfig::PhiAccrual(_) => {
             Err("φ-accrual learns from the intervals that losses leave: no closed form is known")
         }
@@ -185,23 +188,4 @@ fn ends(scene: &Scene<'_>, silence: f64) -> f64 {
     let first = (1.0 + (1.0 - arriving) * memory / (1.0 - memory)) / arriving;
     let interval = scene.interval_s();
     ((silence + interval * (0.5 + first)) / scene.duration_s).min(1.0)
-}
-
-/// From the arrival of a status until its receiver reads it, on average, seconds.
-fn reading_delay(scene: &Scene<'_>) -> f64 {
-    let control = &scene.scenario.control;
-    let period = scene.period_s();
-    match (control.wake, control.phase) {
-        (WakeConfig::OnReception, _) => 0.0,
-        (WakeConfig::ControlStep, PhaseConfig::Random) => period / 2.0,
-        (WakeConfig::ControlStep, PhaseConfig::Together) => {
-            let latencies = scene.scenario.radio.latency.quantiles(QUANTILES);
-            // Sent at a control step and read at one, though not at the same.
-            let waits = latencies.iter().map(|latency| {
-                let steps = (latency / period - 1e-9).ceil().max(1.0);
-                steps * period - latency
-            });
-            waits.sum::<f64>() / latencies.len() as f64
-        }
-    }
 }

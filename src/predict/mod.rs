@@ -7,6 +7,7 @@
 
 mod compare;
 mod detection;
+mod reading;
 mod scene;
 mod swarm;
 mod timeout;

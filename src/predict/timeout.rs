@@ -13,7 +13,7 @@
 //! the very instant of the timeout is in time. NFD-S counts from the sending: its TO is η + δ, and Δ the latency of the second status
 //! alone. Statuses are taken not to overtake each other.
 
-use crate::radio::{LatencyConfig, LossChain, LossRun};
+use crate::radio::{LatencyConfig, LossChain};
 
 /// Latencies that stand for all.
 const QUANTILES: u32 = 200;
@@ -98,23 +98,22 @@ impl Timeout {
         let ends = |of: &[f64]| (of[0], of[of.len() - 1]);
         let ((earliest, latest), (least, most)) = (ends(&self.begins), ends(&self.latencies));
         let (mut late, mut beyond) = (0.0, 0.0);
-        // Gaps that end too early to be one, then those that may be one, then those that are.
-        let mut gap = 0_u32;
-        while f64::from(gap + 1) * self.interval <= self.silence + latest - least + ROUNDING {
+        // Gaps that end too early to be one, all at once; then those that may be one, then those that are.
+        let early = ((self.silence - most + earliest + ROUNDING) / self.interval).max(0.0) as u64;
+        run.lose_all(early);
+        let mut gap = early;
+        while (gap + 1) as f64 * self.interval <= self.silence + latest - least + ROUNDING {
             let before = run.probability();
             run.lose();
             gap += 1;
             let ends = before - run.probability();
-            let over = f64::from(gap) * self.interval - self.silence;
-            if over + most - earliest > ROUNDING {
-                late += ends * self.share_of_pairs(|first, second| over + second - first > ROUNDING);
-                beyond += ends * self.mean_of_pairs(|first, second| (over + second - first).max(0.0));
-            }
+            let over = gap as f64 * self.interval - self.silence;
+            late += ends * self.share_of_pairs(|first, second| over + second - first > ROUNDING);
+            beyond += ends * self.mean_of_pairs(|first, second| (over + second - first).max(0.0));
         }
         let (certain, longer) = (run.probability(), run.probabilities_from_here());
         late += certain;
-        beyond +=
-            certain * (f64::from(gap) * self.interval - self.silence + mean(&self.latencies) - mean(&self.begins));
+        beyond += certain * (gap as f64 * self.interval - self.silence + mean(&self.latencies) - mean(&self.begins));
         if certain > 0.0 {
             beyond += self.interval * longer;
         }
@@ -128,25 +127,53 @@ impl Timeout {
 
     /// E[T_D] = E[(TO + D − U − Kη)⁺], without D where the silence begins at the sending, of a robot that fails at a time that has nothing to do with its statuses: U is uniform in
     /// (0, η], K the number of its last statuses that were lost. A robot that is suspected as it fails is detected at once.
+    ///
+    /// E[(X − A)⁺] = ∫₀ˣ P(A ≤ t) dt = X − ∫₀ˣ P(A > t) dt, A = U + Kη the age of what was last heard.
     pub fn detection_time(&self, chain: LossChain) -> f64 {
-        let mean_beyond = |losses: u32| {
-            let at_most = |begin: &f64| self.silence + begin - f64::from(losses) * self.interval;
-            let square = |time: f64| time.max(0.0).powi(2);
-            let of = |time: f64| (square(time) - square(time - self.interval)) / (2.0 * self.interval);
-            self.begins.iter().map(at_most).map(of).sum::<f64>() / self.begins.len() as f64
-        };
-        let mut run: LossRun = chain.at_any_time();
-        let (mut mean, mut losses) = (0.0, 0);
-        loop {
-            let after = mean_beyond(losses);
-            if after <= 0.0 {
-                return mean;
-            }
-            let before = run.probability();
-            run.lose();
-            mean += (before - run.probability()) * after;
-            losses += 1;
-        }
+        let times = self.begins.iter().map(|begin| {
+            let most = self.silence + begin;
+            (most - self.interval * self.ages_beyond(chain, most)).max(0.0)
+        });
+        times.sum::<f64>() / self.begins.len() as f64
+    }
+
+    /// ∫₀ˣ P(A > t) dt in intervals: with T(k) the chance that the last k statuses were lost, P(A > t) falls in a straight line
+    /// from T(k) at kη to T(k+1) at (k+1)η.
+    fn ages_beyond(&self, chain: LossChain, until: f64) -> f64 {
+        let (whole, part) = self.intervals(until);
+        let mut run = chain.at_any_time();
+        let first = run.probability();
+        let sum = run.lose_all(whole);
+        let last = run.probability();
+        run.lose();
+        let lines = sum + f64::midpoint(last, -first);
+        lines + last * (part - part * part / 2.0) + run.probability() * part * part / 2.0
+    }
+
+    /// P(A > `age`): that what was last heard is older, at a time that has nothing to do with the statuses.
+    pub fn is_older(&self, chain: LossChain, age: f64) -> f64 {
+        let (whole, part) = self.intervals(age);
+        let mut run = chain.at_any_time();
+        run.lose_all(whole);
+        let last = run.probability();
+        run.lose();
+        last + part * (run.probability() - last)
+    }
+
+    /// How many whole intervals fit into `time`, and what part of one is left.
+    fn intervals(&self, time: f64) -> (u64, f64) {
+        let intervals = (time / self.interval).max(0.0);
+        (intervals as u64, intervals.fract())
+    }
+
+    /// From the arrival of a status to the instant at which a timer that its predecessor set may fire, seconds.
+    pub fn after_arrival(&self) -> f64 {
+        (self.silence + mean(&self.begins) - mean(&self.latencies)).rem_euclid(self.interval)
+    }
+
+    /// η, seconds.
+    pub fn interval(&self) -> f64 {
+        self.interval
     }
 
     fn share_of_pairs(&self, holds: impl Fn(f64, f64) -> bool) -> f64 {
@@ -236,6 +263,23 @@ mod tests {
         // TO + d − η(½ + p/(1−p)) = 2.75 s, and 2.7528 s where a time is never below zero.
         assert!((time - 2.7528).abs() < 5e-5, "{time}");
         assert!((constant(1.0, 3.5).detection_time(bernoulli(0.0)) - 3.05).abs() < 1e-12);
+    }
+
+    /// Ten thousand million intervals are as soon reckoned with as three: without loss a failure is found after TO + d − η/2, and with
+    /// p = ½ on average half an interval and 1/(1−p) − 1 = 1 of them sooner.
+    #[test]
+    fn a_timeout_of_any_length_has_its_closed_form_at_once() {
+        let detector = constant(0.1, 1e9);
+        assert!((detector.detection_time(bernoulli(0.5)) - (1e9 + 0.05 - 0.15)).abs() < 1e-5);
+        assert!(detector.mistakes(bernoulli(0.5)).rate.abs() < 1e-300);
+        let never = bernoulli(1.0 - 1e-12);
+        // m = 10¹⁰ losses in a row have the chance exp(−10¹⁰⁻¹²).
+        let rate = 1e-12 * (-0.01_f64).exp() / 0.1;
+        assert!(
+            (detector.mistakes(never).rate / rate - 1.0).abs() < 1e-3,
+            "{:?}",
+            detector.mistakes(never)
+        );
     }
 
     #[test]

@@ -97,6 +97,25 @@ impl LossRun {
         });
     }
 
+    /// So many more are lost. Returns the sum of the probabilities before each: with w the weights and A the step to a lost frame,
+    /// w (I + A + … + Aⁿ⁻¹) 1, by doubling: in no time, however many they are.
+    pub fn lose_all(&mut self, frames: u64) -> f64 {
+        let LossChain { step, loss, .. } = self.chain;
+        let a = [0, 1].map(|from| [0, 1].map(|to| step[from][to] * loss[to]));
+        let (mut power, mut sum) = ([[1.0, 0.0], [0.0, 1.0]], [[0.0; 2]; 2]);
+        for bit in (0..u64::BITS - frames.leading_zeros()).rev() {
+            sum = plus(sum, times(power, sum));
+            power = times(power, power);
+            if frames >> bit & 1 == 1 {
+                sum = plus(sum, power);
+                power = times(power, a);
+            }
+        }
+        let [good, bad] = self.weights;
+        self.weights = [0, 1].map(|to| good * power[0][to] + bad * power[1][to]);
+        good * (sum[0][0] + sum[0][1]) + bad * (sum[1][0] + sum[1][1])
+    }
+
     /// The probabilities of this and of all longer runs, summed: with w the weights and A the step to a lost frame,
     /// w (I − A)⁻¹ 1. Infinite if a loss may be the first of endless ones.
     #[must_use]
@@ -111,6 +130,16 @@ impl LossRun {
             .sum();
         if sum > 0.0 { sum / determinant } else { 0.0 }
     }
+}
+
+type Matrix = [[f64; 2]; 2];
+
+fn times(a: Matrix, b: Matrix) -> Matrix {
+    a.map(|[left, right]| [0, 1].map(|to| left * b[0][to] + right * b[1][to]))
+}
+
+fn plus(a: Matrix, b: Matrix) -> Matrix {
+    [0, 1].map(|from| [0, 1].map(|to| a[from][to] + b[from][to]))
 }
 
 impl LatencyConfig {
@@ -179,6 +208,29 @@ mod tests {
         let run = chain.after_arrival().unwrap();
         assert!((lost(run, 3) - 0.008).abs() < 1e-15 && (lost(chain.at_any_time(), 3) - 0.008).abs() < 1e-15);
         assert!((run.probabilities_from_here() - 1.25).abs() < 1e-12, "1/(1−p)");
+    }
+
+    #[test]
+    fn many_losses_at_once_are_those_one_by_one_and_the_sum_is_that_of_their_probabilities() {
+        for chain in [
+            gilbert(0.05, 0.2, 0.0, 1.0),
+            gilbert(0.3, 0.6, 0.1, 0.8),
+            gilbert(1.0, 1.0, 1.0, 1.0),
+        ] {
+            for frames in [0, 1, 2, 3, 7, 20, 33] {
+                let (mut one_by_one, mut at_once) = (chain.at_any_time(), chain.at_any_time());
+                let mut sum = 0.0;
+                for _ in 0..frames {
+                    sum += one_by_one.probability();
+                    one_by_one.lose();
+                }
+                let found = at_once.lose_all(frames);
+                assert!((found - sum).abs() < 1e-12, "{frames}: {found}, not {sum}");
+                assert!((at_once.probability() - one_by_one.probability()).abs() < 1e-14);
+            }
+        }
+        let all: f64 = gilbert(0.05, 0.2, 0.0, 1.0).at_any_time().lose_all(u64::MAX);
+        assert!((all - 2.0).abs() < 1e-9, "1 + π/r: {all}");
     }
 
     #[test]

@@ -53,6 +53,8 @@ pub struct Explained {
     pub heard_s: f64,
     /// When the observer trusted the robot again, seconds.
     pub trusted_s: Option<f64>,
+    /// When it ceased to count as a mistake without trust, seconds: one of the two failed or left the other's range, or the trial ended.
+    pub cut_off_s: Option<f64>,
     /// What to make of it: a name of [`Verdict`].
     pub verdict: &'static str,
     /// What it was due to: a name of [`detection::Cause`].
@@ -231,6 +233,12 @@ impl Explanation {
         for alike in statuses.chunk_by(|a, b| a.fate.is_like(b.fate)) {
             alike.chunks(size).for_each(|group| tell_alike(group, text));
         }
+        if let Some(at) = suspicion.cut_off_s {
+            let words = format!(
+                "It counts as a mistake until {at:.3} s, when one of the two failed, they parted or the trial ended."
+            );
+            paragraph(text, "   ", &words);
+        }
         let end = match (suspicion.trusted_s, &suspicion.restored_by) {
             (Some(at), Some(status)) => format!(
                 "Robot {observer} trusted it again at {at:.3} s, when it read the status sent at {:.3} s{}.",
@@ -287,6 +295,10 @@ fn explain(number: usize, suspicion: &Suspicion, trace: &StatusTrace) -> Explain
         suspected_s: at.as_secs(),
         heard_s: suspicion.heard.as_secs(),
         trusted_s: suspicion.until.map(SimTime::as_secs),
+        cut_off_s: suspicion
+            .duration
+            .filter(|_| suspicion.cut_off)
+            .map(|duration| (at + duration).as_secs()),
         verdict: suspicion.verdict().name(),
         cause: suspicion.cause.name(),
         statuses: missed.map(|status| status_at(observer, status, at)).collect(),
@@ -392,7 +404,7 @@ fn loss(cause: &str) -> &str {
 fn judgement(verdict: &str) -> &'static str {
     match verdict {
         _ if verdict == Verdict::Right.name() => "rightly, for it could not send",
-        _ if verdict == Verdict::OutOfRange.name() => "it was well, and out of range",
+        _ if verdict == Verdict::OutOfRange.name() => "it was well, but not within range all the while",
         _ if verdict == Verdict::Observer.name() => "it was well, but the observer could not hear",
         _ => "a mistake",
     }

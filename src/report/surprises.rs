@@ -11,23 +11,82 @@ pub fn section(page: &mut Page, surprises: &[Surprise]) {
         return;
     }
     page.heading("Not as predicted (see `desim check --predict`)");
-    for surprise in surprises {
-        page.item(&words(surprise));
+    for (together, why) in by_reason(surprises) {
+        for surprise in together {
+            page.item(&words(surprise));
+        }
+        page.item(&format!("because {why}"));
     }
 }
 
-/// What is not as predicted, in words.
+/// Figures that are not as predicted for the same reason, each reason once, in the order in which they come up.
+pub fn by_reason(surprises: &[Surprise]) -> Vec<(Vec<&Surprise>, &str)> {
+    let mut reasons: Vec<(Vec<&Surprise>, &str)> = Vec::new();
+    for surprise in surprises {
+        match reasons.iter_mut().find(|(_, why)| *why == surprise.why) {
+            Some((together, _)) => together.push(surprise),
+            None => reasons.push((vec![surprise], &surprise.why)),
+        }
+    }
+    reasons
+}
+
+/// What is not as predicted, in words, the reason left out.
 pub fn words(surprise: &Surprise) -> String {
     let Surprise {
-        predicted,
-        measured,
-        why,
+        predicted, measured, ..
     } = surprise;
     let write = |value| in_unit(value, predicted.unit);
     format!(
-        "{} {}, predicted {}: {why}",
+        "{} {}, predicted {}",
         predicted.what,
         estimate(measured, write),
         write(predicted.value)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::Estimate;
+    use crate::predict::{Holds, Prediction};
+
+    fn surprise(what: &'static str, why: &str) -> Surprise {
+        Surprise {
+            predicted: Prediction {
+                name: what,
+                what,
+                value: 0.5,
+                unit: "1",
+                accuracy: 0.0,
+                holds: Holds::Throughout,
+                formula: "p",
+                assumes: "nothing".to_owned(),
+            },
+            measured: Estimate::default(),
+            why: why.to_owned(),
+        }
+    }
+
+    #[test]
+    fn a_reason_that_several_figures_share_is_said_once() {
+        let mut page = Page {
+            text: String::new(),
+            colour: false,
+        };
+        let surprises = [
+            surprise("loss", "robots moved"),
+            surprise("latency", "in flight"),
+            surprise("bytes", "robots moved"),
+        ];
+        section(&mut page, &surprises);
+        assert_eq!(page.text.matches("robots moved").count(), 1);
+        let places = ["loss", "bytes", "because robots moved", "latency", "because in flight"]
+            .map(|words| page.text.find(words));
+        assert!(
+            places.is_sorted() && places.iter().all(Option::is_some),
+            "{}",
+            page.text
+        );
+    }
 }

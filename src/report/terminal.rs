@@ -22,6 +22,8 @@ pub struct Input<'a> {
     pub summary: &'a Summary,
     /// Length of a control step, seconds.
     pub control_period_s: f64,
+    /// Whether robots ran a failure detector.
+    pub detects: bool,
     /// Where the run is not as predicted.
     pub surprises: &'a [Surprise],
     /// What the run took.
@@ -59,7 +61,7 @@ pub fn terminal(input: &Input) -> String {
     bandwidth(&mut page, input.summary);
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
-    detection(&mut page, &input.summary.detection);
+    detection(&mut page, input);
     surprises::section(&mut page, input.surprises);
     run(&mut page, input);
     page.text
@@ -265,9 +267,14 @@ fn connectivity(page: &mut Page, summary: &Summary) {
     page.entry("in one piece", &format!("{connected} of the time"));
 }
 
-fn detection(page: &mut Page, detection: &Detection) {
+fn detection(page: &mut Page, input: &Input) {
+    let detection = &input.summary.detection;
     page.heading("Failure detection");
-    if detection.monitored_s.value <= 0.0 {
+    if !input.detects {
+        page.line("  none: robots ran no failure detector");
+        return;
+    }
+    if detection.monitored_s.value <= 0.0 && detection.suspicions.value == 0 {
         page.line("  no robot watched another");
         return;
     }

@@ -1,5 +1,6 @@
 //! Between a robot that sends and the robots that hear: encode, offer to the medium, put arrivals into inboxes.
 
+use std::any::type_name;
 use std::borrow::Borrow as _;
 
 use bytes::BytesMut;
@@ -175,15 +176,16 @@ impl<P: Protocol> Air<P> {
         self.codec.encode(message, &mut self.payload)?;
         let bytes = self.payload.len();
         let size = MessageSize {
-            payload_bytes: u16::try_from(bytes).map_err(|_| RunError::TooLong { topic, bytes })?,
+            payload_bytes: u16::try_from(bytes).map_err(|_| RunError::TooLong {
+                protocol: type_name::<P>(),
+                topic: topic_name::<P>(topic),
+                bytes,
+            })?,
             rides: !self.aboard.is_empty(),
         };
         digest.payload(&self.payload);
         // Every receiver gets the same bytes, so they are decoded once for all.
-        let message = self
-            .codec
-            .decode(&mut self.payload)?
-            .ok_or(RunError::Undecodable { topic })?;
+        let message = self.decode(topic)?;
         let sequence = self.sequences[sender.index()];
         self.sequences[sender.index()] = sequence.wrapping_add(1);
         recorder.transmitted(sender, topic, size);
@@ -198,6 +200,35 @@ impl<P: Protocol> Air<P> {
             size,
             message: message.into(),
         })
+    }
+
+    /// What receivers make of the payload of a message on `topic`.
+    fn decode(&mut self, topic: Topic) -> Result<P::Message, RunError> {
+        let bytes = self.payload.len();
+        let (protocol, name) = (type_name::<P>(), topic_name::<P>);
+        let message = self.codec.decode(&mut self.payload)?.ok_or(RunError::Undecodable {
+            protocol,
+            topic: name(topic),
+            bytes,
+        })?;
+        let read = P::topic(&message);
+        if read != topic {
+            return Err(RunError::OtherTopic {
+                protocol,
+                topic: name(topic),
+                bytes,
+                read: name(read),
+            });
+        }
+        if !self.payload.is_empty() {
+            return Err(RunError::Unread {
+                protocol,
+                topic: name(topic),
+                bytes,
+                read: bytes - self.payload.len(),
+            });
+        }
+        Ok(message)
     }
 
     /// Transmits the messages `aboard`, one at least and all of one sender, as one frame: at each receiver they share one fate.
@@ -367,6 +398,11 @@ impl<P: Protocol> Air<P> {
             }
         }
     }
+}
+
+/// What the protocol calls `topic`.
+fn topic_name<P: Protocol>(topic: Topic) -> &'static str {
+    P::TOPICS.get(usize::from(topic.0)).unwrap_or(&"that it does not name")
 }
 
 fn record_loss<P: Protocol>(receiver: ActorId, frame: &Frame<P::Heard>, cause: LossCause, recorder: &mut Recorder) {

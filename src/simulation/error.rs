@@ -1,6 +1,6 @@
 //! How a run can fail.
 
-use crate::protocol::{CodecError, Topic};
+use crate::protocol::CodecError;
 
 /// Why a run stopped before its end.
 #[derive(Debug, thiserror::Error)]
@@ -9,16 +9,48 @@ pub enum RunError {
     #[error("a message cannot cross the air: {0}")]
     Codec(#[from] CodecError),
     /// The codec made bytes that it does not read as a whole message.
-    #[error("the codec's own bytes on topic {} are not a whole message to its decoder", topic.0)]
+    #[error("the codec of {protocol} does not read its own {bytes} bytes on topic `{topic}` as a whole message")]
     Undecodable {
+        /// The protocol's type.
+        protocol: &'static str,
         /// The message's topic.
-        topic: Topic,
+        topic: &'static str,
+        /// The length of its payload.
+        bytes: usize,
+    },
+    /// The codec made bytes of which it reads only a part.
+    #[error(
+        "the codec of {protocol} reads {read} of its own {bytes} bytes on topic `{topic}`: what it leaves would never arrive"
+    )]
+    Unread {
+        /// The protocol's type.
+        protocol: &'static str,
+        /// The message's topic.
+        topic: &'static str,
+        /// The length of its payload.
+        bytes: usize,
+        /// How much of it was read.
+        read: usize,
+    },
+    /// The codec made a message of another topic of the bytes.
+    #[error("the codec of {protocol} makes a message on topic `{read}` of the {bytes} bytes of one on topic `{topic}`")]
+    OtherTopic {
+        /// The protocol's type.
+        protocol: &'static str,
+        /// The message's topic.
+        topic: &'static str,
+        /// The length of its payload.
+        bytes: usize,
+        /// The topic of what was read.
+        read: &'static str,
     },
     /// A message is longer than a frame can hold.
-    #[error("a message of {bytes} bytes on topic {} is too long: a frame holds at most 65535", topic.0)]
+    #[error("a message of {bytes} bytes of {protocol} on topic `{topic}` is too long: a frame holds at most 65535")]
     TooLong {
+        /// The protocol's type.
+        protocol: &'static str,
         /// The message's topic.
-        topic: Topic,
+        topic: &'static str,
         /// The length of its payload.
         bytes: usize,
     },

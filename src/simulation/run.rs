@@ -163,6 +163,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                         return Err(RunError::Interrupted);
                     }
                     self.world.advance();
+                    self.recorder.tick(&self.world);
                     self.queue.schedule(event, now + self.world.tick());
                 }
                 Event::Fault => self.suffer(now),

@@ -170,6 +170,7 @@ impl Setup {
             completion: self.completion,
             // A status may be that much older than the silence that it began, when its latency is long.
             status_memory: self.detector.longest_silence(circumstances) * 2,
+            patience: self.detector.usual_silence(circumstances),
             trace: self.trace,
         }
     }

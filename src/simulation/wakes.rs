@@ -10,6 +10,7 @@ use super::air::Surroundings;
 use super::error::RunError;
 use super::run::{Event, JobFor, Run};
 use crate::engine::{ActorId, Driver, Job, SimTime, Span, prefetch};
+use crate::metrics::detection::Inbox;
 use crate::protocol::{Input, Note, Output, Protocol, Robot, Wake};
 
 /// Control steps taken in one round, at most: their inboxes should still be in the cache when their answers are read.
@@ -173,7 +174,11 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         self.digest.wake(now, robot, input, output);
         for note in output.notes.drain(..) {
             self.recorder.note(robot, &note);
-            self.recorder.belief(now, robot, &note, self.air.waiting(robot));
+            let inbox = Inbox {
+                read: &input.inbox,
+                waiting: self.air.waiting(robot),
+            };
+            self.recorder.belief(now, robot, &note, inbox);
             if let Note::Role(role) = note {
                 self.faults.enter(now, robot, role.0);
                 self.plan_faults();

@@ -3,6 +3,7 @@
 //! A figure must lie within four standard errors. Seeds are fixed: what passes goes on passing.
 
 mod missions;
+mod moving;
 mod nfd_s;
 mod phi;
 mod swim;

@@ -6,6 +6,15 @@ use crate::radio::LossCause;
 
 use super::record::Missed;
 
+/// Frames at an observer, of all topics.
+#[derive(Debug)]
+pub struct Inbox<'a, M> {
+    /// Those that it reads now.
+    pub read: &'a [Reception<M>],
+    /// Those that are on their way to it.
+    pub waiting: &'a [Reception<M>],
+}
+
 /// Statuses sent and copies of them lost, for the last while. What is delivered leaves no trace here: that is by far the
 /// most, and a status that was sent, not lost and is not under way was either read or out of range.
 #[derive(Debug)]
@@ -21,6 +30,8 @@ struct Sender {
     lost: Vec<Lost>,
     /// When the first status in `sent` was sent.
     since: SimTime,
+    /// The robot's first frame that was a status, if it has sent one.
+    first: Option<u32>,
 }
 
 #[derive(Debug)]
@@ -62,7 +73,7 @@ impl Lost {
 }
 
 impl StatusLog {
-    /// An empty log that reaches back `memory`.
+    /// An empty log that reaches back `memory`; zero where no suspicion will ever be traced.
     pub fn new(robots: usize, memory: Span) -> Self {
         Self {
             memory,
@@ -84,6 +95,9 @@ impl StatusLog {
 
     /// `sender` sends a status, its frame number `sequence`.
     pub fn sent(&mut self, now: SimTime, sender: ActorId, sequence: u32) {
+        if self.memory == Span::ZERO {
+            return;
+        }
         let sender = &mut self.senders[sender.index()];
         // What is too old goes half a memory at a time, so that a push is mostly a push.
         if sender.since + self.memory + self.memory / 2 < now {
@@ -91,6 +105,7 @@ impl StatusLog {
         }
         if sender.sent.is_empty() {
             sender.since = now;
+            sender.first.get_or_insert(sequence);
         }
         sender.sent.push(Sent { sequence, at: now });
     }
@@ -98,6 +113,9 @@ impl StatusLog {
     /// The copy of a status that was meant for `receiver` is lost.
     #[inline]
     pub fn lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {
+        if self.memory == Span::ZERO {
+            return;
+        }
         let lost = &mut self.senders[sender.index()].lost;
         lost.push(Lost::new(receiver, sequence, cause));
     }
@@ -134,6 +152,31 @@ impl StatusLog {
         let accounted = missed.lost.iter().sum::<u32>() + missed.under_way;
         missed.out_of_range = u32::saturating_sub(total, accounted);
         missed
+    }
+
+    /// When `observer` came into range of `subject`, of which it now reads statuses for the first time: half-way between the last status that was sent while it was out of range and the first
+    /// that was not. `None` if there was no such status, that is, if it has been in range from the start.
+    pub fn met<M>(&self, [observer, subject]: [ActorId; 2], inbox: Inbox<'_, M>) -> Option<SimTime> {
+        let Sender { sent, lost, first, .. } = &self.senders[subject.index()];
+        let reached = |status: &&Sent| {
+            let mut frames = inbox.read.iter().chain(inbox.waiting).map(|reception| &reception.frame);
+            lost.iter()
+                .any(|copy| copy.sequence == status.sequence && copy.receiver() == observer)
+                || frames.any(|frame| frame.sequence == status.sequence && frame.sender == subject)
+        };
+        // Newer ones may have been sent when the two had parted again.
+        let met = sent.iter().rev().skip_while(|status| !reached(status));
+        let Some(begun) = met.take_while(reached).last() else {
+            return sent.last().map(|status| status.at);
+        };
+        let before = sent
+            .iter()
+            .rev()
+            .find(|status| is_newer(begun.sequence, status.sequence));
+        match before {
+            Some(before) => Some(before.at + begun.at.since(before.at) / 2),
+            None => (*first != Some(begun.sequence)).then_some(begun.at),
+        }
     }
 
     /// How many of the frames `sequences` of `subject` are statuses.

@@ -68,7 +68,7 @@ pub enum Verdict {
     Right,
     /// The subject was well and so was the way to it: the detector erred.
     Mistake,
-    /// The subject was well and out of range.
+    /// The subject was well and out of range, or had just been.
     OutOfRange,
     /// The observer could not hear.
     Observer,
@@ -97,7 +97,8 @@ pub enum Cause {
     Failure,
     /// Most of the statuses missed were lost for this reason.
     Lost(LossCause),
-    /// Most of them were sent while the observer was out of range.
+    /// The two were out of range of each other at that instant, or at some time while the detector waited; or most of the statuses
+    /// missed were sent while they were.
     OutOfRange,
     /// Most of them were still under way.
     Latency,

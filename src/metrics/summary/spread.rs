@@ -65,7 +65,8 @@ impl Pairs {
             .collect();
         let mut times: Vec<SimTime> = well.iter().copied().flatten().collect();
         times.sort_unstable();
-        (!record.spread.is_empty()).then_some(Self {
+        // Of nobody there is nothing to say.
+        (!well.is_empty()).then_some(Self {
             count: well.len(),
             times,
             end: record.simulated,
@@ -75,11 +76,12 @@ impl Pairs {
 
 impl Pairs {
     fn informed_ratio(&self) -> f64 {
-        self.times.len() as f64 / self.count.max(1) as f64
+        self.times.len() as f64 / self.count as f64
     }
 }
 
-/// The share of all pairs of a robot and a rumour in which the robot knew the rumour at the end of a trial; `None` without rumours.
+/// The share of all pairs of a robot and a rumour in which the robot knew the rumour at the end of a trial; `None` without rumours, or without robots that
+/// are well.
 pub(in crate::metrics) fn informed_ratio(record: &TrialRecord) -> Option<f64> {
     Pairs::of(record).map(|pairs| pairs.informed_ratio())
 }
@@ -96,8 +98,7 @@ impl SpreadTime {
     /// Until so many of all pairs were informed.
     fn of(trials: &[Pairs], wanted: impl Fn(usize) -> usize) -> Self {
         let observe = |trial: &Pairs| {
-            let last = wanted(trial.count).checked_sub(1);
-            let time = last.map_or(Some(SimTime::ZERO), |last| trial.times.get(last).copied());
+            let time = trial.times.get(wanted(trial.count) - 1).copied();
             Observation {
                 time: time.unwrap_or(trial.end).as_secs(),
                 happened: time.is_some(),

@@ -31,6 +31,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
         rumors: 0,
         completion: crate::protocol::CompletionConfig::default(),
         status_memory: Span::from_secs(8.0),
+        patience: Span::from_secs(4.0),
         trace: None,
     };
     let mut recorder = Recorder::new(layout, &MetricsConfig::default());

@@ -13,6 +13,9 @@ use crate::quantity::Positive;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum DetectorConfig {
+    /// None: robots suspect nobody, keep no account of whom they hear, and set no timer. Not for `Backbone`, which forgets who has left and
+    /// mends its chains by what its detector says.
+    None,
     /// A neighbour not heard for this many seconds is declared inactive (paper section 4.3). Recommended: several times
     /// `gossip.status.interval`, for each loss in a row takes one.
     Timeout(Positive),
@@ -47,6 +50,7 @@ impl DetectorConfig {
     #[must_use]
     pub fn words(&self) -> Option<String> {
         match self {
+            Self::None => Some("Robots ran no failure detector: nobody was ever suspected.".to_owned()),
             Self::Timeout(_) => None,
             Self::NfdS(config) => Some(format!(
                 "Robots ran NFD-S: one was suspected {} s after the first status that was missing should have been sent.",
@@ -71,10 +75,11 @@ impl DetectorConfig {
     }
 
     /// The silence after which a robot is suspected that sent its statuses regularly, no copy lost, none late. With SWIM,
-    /// which does not count statuses, the silence that it takes on average.
+    /// which does not count statuses, the silence that it takes on average; zero with `None`, which takes no silence for anything.
     #[must_use]
     pub fn usual_silence(&self, circumstances: Circumstances) -> Span {
         match self {
+            Self::None => Span::ZERO,
             Self::Timeout(timeout) => Span::from_secs(timeout.get()),
             Self::NfdS(config) => config.silence(circumstances.status_interval),
             Self::PhiAccrual(config) => config.regular_silence(circumstances.status_interval),
@@ -83,14 +88,14 @@ impl DetectorConfig {
     }
 
     /// The shortest silence after which a robot is suspected that sends its statuses regularly, no copy lost, none late: it
-    /// must outlast the pause from one status to the next. None with SWIM, which does not count them.
+    /// must outlast the pause from one status to the next. None with SWIM, which does not count them, and with `None`.
     #[must_use]
     pub fn shortest_silence(&self, circumstances: Circumstances) -> Option<Span> {
         let usual = self.usual_silence(circumstances);
         match self {
             Self::Timeout(_) | Self::NfdS(_) => Some(usual),
             Self::PhiAccrual(config) => Some(usual.min(config.first_silence())),
-            Self::Swim(_) => None,
+            Self::None | Self::Swim(_) => None,
         }
     }
 
@@ -100,7 +105,7 @@ impl DetectorConfig {
     #[must_use]
     pub fn longest_silence(&self, circumstances: Circumstances) -> Span {
         match self {
-            Self::Timeout(_) | Self::NfdS(_) => self.usual_silence(circumstances),
+            Self::None | Self::Timeout(_) | Self::NfdS(_) => self.usual_silence(circumstances),
             Self::PhiAccrual(config) => config.longest_silence(circumstances.status_interval),
             Self::Swim(config) => config.longest_silence(circumstances.robots),
         }
@@ -110,7 +115,7 @@ impl DetectorConfig {
     #[must_use]
     pub fn problems(&self) -> Vec<(String, String)> {
         match self {
-            Self::Timeout(_) | Self::NfdS(_) => Vec::new(),
+            Self::None | Self::Timeout(_) | Self::NfdS(_) => Vec::new(),
             Self::PhiAccrual(config) => config.problems(),
             Self::Swim(config) => config.problems(),
         }

@@ -72,7 +72,7 @@ impl DetectorConfig {
             Self::Timeout(_) => Some(after_silence(silence(), link.latency_s, link)),
             // Counted from the sending: with a constant latency this is a timeout that is shorter by it.
             Self::NfdS(_) => Some(after_silence(silence() - link.latency_s, link.latency_s, link)),
-            Self::PhiAccrual(_) | Self::Swim(_) => None,
+            Self::None | Self::PhiAccrual(_) | Self::Swim(_) => None,
         }
     }
 }
@@ -110,22 +110,34 @@ fn after_silence(timeout: f64, latency: f64, link: &Link) -> Quality {
 }
 
 /// A robot fails u intervals after its last status, u uniform in 0 to 1, of which the last k were lost: it is detected
-/// TO + d − (u + k) η later, or at once.
+/// TO + d − (u + k) η later, or at once. With T(k) the chance that the last k were lost, 1 and then π (1−r)^(k−1), the age of what was
+/// last heard is beyond t with a chance that falls in a straight line from T(k) at kη to T(k+1) at (k+1)η, and
+/// E\[T_D\] = X − ∫₀ˣ of it, X = TO + d.
 fn detection_time(longest: f64, link: &Link) -> f64 {
-    let (interval, p, r) = (link.interval_s, link.good_to_bad, link.bad_to_good);
-    let arriving = 1.0 - link.loss();
-    let mut sum = 0.0;
-    let mut chance = arriving;
-    let mut left = longest;
-    let mut lost = 0;
-    while left > 0.0 && chance > 0.0 {
-        let shortest = (left - interval).max(0.0);
-        sum += chance * (left * left - shortest * shortest) / (2.0 * interval);
-        chance *= if lost == 0 { p } else { 1.0 - r };
-        left -= interval;
-        lost += 1;
-    }
-    sum
+    let (interval, lost, r) = (link.interval_s, link.loss(), link.bad_to_good);
+    let intervals = longest.max(0.0) / interval;
+    let (whole, part) = (intervals.floor(), intervals.fract());
+    let run = |losses: f64| {
+        if losses < 1.0 {
+            1.0
+        } else {
+            lost * (1.0 - r).powf(losses - 1.0)
+        }
+    };
+    // T(1) + … + T(n − 1)
+    let sum = |n: f64| match n - 1.0 {
+        terms if terms <= 0.0 || lost == 0.0 => 0.0,
+        terms if r == 0.0 => lost * terms,
+        // 1 − (1−r)ⁿ, without loss of digits where r is small.
+        terms => lost * -(terms * (-r).ln_1p()).exp_m1() / r,
+    };
+    let lines = if whole < 1.0 {
+        0.0
+    } else {
+        f64::midpoint(run(0.0), run(whole)) + sum(whole)
+    };
+    let rest = run(whole) * (part - part * part / 2.0) + run(whole + 1.0) * part * part / 2.0;
+    (longest.max(0.0) - interval * (lines + rest)).max(0.0)
 }
 
 /// NFD-S with independent loss and any latency (Chen, Toueg and Aguilera, theorem 5): statuses every `interval_s`, freshness
@@ -137,10 +149,29 @@ fn detection_time(longest: f64, link: &Link) -> f64 {
 /// T_D ≤ δ + η; the mean of T_D is ours.
 #[must_use]
 pub fn nfd_s_quality(interval_s: f64, shift_s: f64, arrived: impl Fn(f64) -> f64) -> Quality {
-    let newest = (shift_s / interval_s).ceil() as u32;
+    let newest = (shift_s / interval_s).ceil() as u64;
     let none_fresh = |x: f64| -> f64 {
-        let missing = |status: u32| 1.0 - arrived(shift_s + x - f64::from(status) * interval_s);
-        (0..=newest).map(missing).product()
+        let missing = |status: u64| 1.0 - arrived(shift_s + x - status as f64 * interval_s);
+        // The oldest have all had time enough: as many as have the same chance as the very oldest count at once.
+        let oldest = missing(0);
+        let (mut alike, mut others) = (0, newest + 1);
+        while alike + 1 < others {
+            let middle = alike.midpoint(others);
+            if missing(middle) > oldest {
+                others = middle;
+            } else {
+                alike = middle;
+            }
+        }
+        let mut product = oldest.powf(others as f64);
+        for status in others..=newest {
+            // It will not grow again.
+            if product < f64::MIN_POSITIVE {
+                break;
+            }
+            product *= missing(status);
+        }
+        product
     };
     let width = interval_s / f64::from(STEPS);
     let middle = |step: u32| none_fresh((f64::from(step) + 0.5) * width);

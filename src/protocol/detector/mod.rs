@@ -89,6 +89,8 @@ pub enum Sign<'a> {
 /// One robot's failure detector: it notes whom the robot watches, suspects (at the exact instant) and trusts.
 #[derive(Debug)]
 pub enum Detector {
+    /// Suspects nobody.
+    None,
     /// Suspects after a fixed silence.
     Timeout(Watch<Timeout>),
     /// Suspects a fixed time after the first status missing should have been sent.
@@ -105,6 +107,7 @@ impl Detector {
     pub fn new(config: &DetectorConfig, circumstances: Circumstances, phases: Phases, id: ActorId) -> Self {
         let silence = config.usual_silence(circumstances);
         match config {
+            DetectorConfig::None => Self::None,
             DetectorConfig::Timeout(_) => Self::Timeout(Watch::new(Timeout(silence))),
             DetectorConfig::NfdS(_) => Self::NfdS(Watch::new(NfdS { silence })),
             DetectorConfig::PhiAccrual(config) => Self::PhiAccrual(Watch::new(Phi::new(config))),
@@ -119,7 +122,7 @@ impl Detector {
             Self::Timeout(watch) => watch.prefetch(),
             Self::NfdS(watch) => watch.prefetch(),
             Self::PhiAccrual(watch) => watch.prefetch(),
-            Self::Swim(_) => {}
+            Self::None | Self::Swim(_) => {}
         }
     }
 
@@ -131,6 +134,7 @@ impl Detector {
         M: Monitored,
     {
         match self {
+            Self::None => {}
             Self::Timeout(watch) => watch.read(inbox, output),
             Self::NfdS(watch) => watch.read(inbox, output),
             Self::PhiAccrual(watch) => watch.read(inbox, output),
@@ -142,6 +146,7 @@ impl Detector {
     /// which is of this wake alone.
     pub fn expire<M: Monitored>(&mut self, now: SimTime, random: &mut Philox, output: &mut Output<M>) {
         match self {
+            Self::None => {}
             Self::Timeout(watch) => watch.expire(now, output),
             Self::NfdS(watch) => watch.expire(now, output),
             Self::PhiAccrual(watch) => watch.expire(now, output),
@@ -164,6 +169,7 @@ impl Detector {
 
     fn suspected_since(&self, robot: ActorId) -> SimTime {
         match self {
+            Self::None => SimTime::NEVER,
             Self::Timeout(watch) => watch.suspected_since(robot),
             Self::NfdS(watch) => watch.suspected_since(robot),
             Self::PhiAccrual(watch) => watch.suspected_since(robot),

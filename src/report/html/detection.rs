@@ -12,6 +12,7 @@ use super::names::Names;
 use super::table::DataTable;
 use crate::metrics::detection::{Cause, FailureOutcome, Verdict};
 use crate::metrics::summary::Measured;
+use crate::protocol::detector::DetectorConfig;
 use crate::report::number;
 
 /// Suspicions by verdict and cause.
@@ -152,6 +153,9 @@ pub fn times(input: &PageInput) -> Option<Figure> {
 /// Detection quality in numbers, a row a figure.
 pub fn quality(input: &PageInput) -> Vec<(&'static str, String)> {
     let detection = &input.summary.detection;
+    if input.scenario.detector == DetectorConfig::None {
+        return vec![("failure detection", "none: robots ran no failure detector".to_owned())];
+    }
     if detection.monitored_s.value <= 0.0 {
         return Vec::new();
     }

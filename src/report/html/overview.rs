@@ -65,8 +65,10 @@ pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
         let share = estimate(&duplicates.total, percent);
         rows.push(("duplicates in the messages delivered", share));
     }
-    for surprise in predict::surprises(input.scenario, summary) {
-        rows.push(("not as predicted", surprises::words(&surprise)));
+    let surprises = predict::surprises(input.scenario, summary);
+    for (together, why) in surprises::by_reason(&surprises) {
+        let figures: Vec<_> = together.into_iter().map(surprises::words).collect();
+        rows.push(("not as predicted", format!("{}: {why}", figures.join("; "))));
     }
     rows
 }
