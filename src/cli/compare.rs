@@ -19,7 +19,8 @@ use crate::scenario::{Plan, contents, is_study, load_study, plan_of_files};
 pub const LONG_ABOUT: &str = "\
 Runs every setting of a study file, or several scenario files, and compares them figure by figure: estimates with intervals, \
 differences with effect size and adjusted p-value, and in plain words which setting is better, by how much, and how sure that is; \
-or that no difference shows, and how many trials would show one.
+or that no difference shows, and how many trials would show one. Of several factors in all combinations it says what each does, averaged \
+over the others, and whether that depends on another.
 
 All settings of a study have the same seed, so that trials of one number share their random numbers and are compared in pairs. \
 Scenario files keep their own seeds and trials: where seeds are equal they are paired, else independent.

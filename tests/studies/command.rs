@@ -26,17 +26,17 @@ fn place() -> TempDir {
     dir
 }
 
-fn desim(dir: &Path, arguments: &[&str]) -> Command {
+pub fn desim(dir: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::cargo_bin("desim").unwrap();
     command.current_dir(dir).args(arguments);
     command
 }
 
-fn text(bytes: &[u8]) -> String {
+pub fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_owned()).unwrap()
 }
 
-fn comparison(dir: &Path) -> Value {
+pub fn comparison(dir: &Path) -> Value {
     serde_json::from_slice(&fs::read(dir.join("comparison.json")).unwrap()).unwrap()
 }
 

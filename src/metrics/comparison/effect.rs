@@ -274,7 +274,7 @@ fn residuals([rows, columns]: [usize; 2], by_trial: impl Fn(usize, usize) -> Vec
             .map(|cell| {
                 let (row, column) = (cell / columns, cell % columns);
                 let left = value(row, column) - of_row(row) - of_column(column) + whole;
-                if left.abs() > 1e-9 * scale { left } else { 0.0 }
+                if left.abs() <= 1e-9 * scale { 0.0 } else { left }
             })
             .collect()
     };

@@ -299,4 +299,6 @@ fn by_key<T>(figures: &[Figure], of: impl Fn(usize) -> T) -> Named<T> {
 }
 
 #[cfg(test)]
+mod effect_tests;
+#[cfg(test)]
 mod tests;

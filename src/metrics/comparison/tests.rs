@@ -7,7 +7,7 @@ use super::*;
 use crate::engine::{Purpose, Streams};
 use crate::metrics::figures::Better;
 
-fn figure(key: &str, better: Better, is_ratio: bool) -> Figure {
+pub(super) fn figure(key: &str, better: Better, is_ratio: bool) -> Figure {
     Figure {
         key: key.to_owned(),
         name: key.to_owned(),
@@ -18,7 +18,7 @@ fn figure(key: &str, better: Better, is_ratio: bool) -> Figure {
 }
 
 /// A design of these figures, all of them tested, the first setting the reference.
-fn design(figures: Vec<Figure>) -> Design {
+pub(super) fn design(figures: Vec<Figure>) -> Design {
     Design {
         study: "made-up".into(),
         question: None,
@@ -31,7 +31,7 @@ fn design(figures: Vec<Figure>) -> Design {
     }
 }
 
-fn plain(values: impl IntoIterator<Item = f64>) -> Vec<Sample> {
+pub(super) fn plain(values: impl IntoIterator<Item = f64>) -> Vec<Sample> {
     let sample = |value| Sample {
         part: [value, 1.0],
         is_censored: false,
@@ -50,7 +50,7 @@ fn trials(name: &str, seed: u64, samples: Vec<Vec<Sample>>) -> Trials {
 }
 
 /// Standard normal numbers, those of `stream` the same each time.
-fn normal(stream: u32, count: usize) -> Vec<f64> {
+pub(super) fn normal(stream: u32, count: usize) -> Vec<f64> {
     let mut random: Philox = Streams::new(7, 0)
         .keyed(Purpose::new("test.comparison"))
         .at(stream, 0, 0);
