@@ -60,6 +60,7 @@ impl Finished<'_> {
         report::terminal(&report::Input {
             question: self.question.as_deref(),
             summary: self.summary,
+            asked: report::Asked::of(self.scenario).as_ref(),
             control_period_s: self.scenario.control.period.get(),
             detects: self.scenario.detector != DetectorConfig::None,
             surprises: &predict::surprises(self.scenario, self.summary),

@@ -333,6 +333,46 @@ pub struct ConnectivitySample {
     pub roles: Vec<u32>,
     /// Vertex-disjoint chains from each target's worker to the root, nl(t) of paper eq. 5, in order of targets.
     pub links: Vec<u32>,
+    /// How each target stands, in order of targets.
+    pub targets: Vec<TargetSample>,
+}
+
+/// A target at one instant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TargetSample {
+    /// Whether it is held with its links, or what stands in the way.
+    pub state: TargetState,
+    /// How far its nearest live worker is from it, metres; `None` without one.
+    pub worker_m: Option<f64>,
+}
+
+/// Whether a target is held with its links, or what stands in the way first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TargetState {
+    /// A worker is at it, with as many chains as it needs.
+    Held,
+    /// No live robot is its worker.
+    NoWorker,
+    /// Its worker is not there.
+    Away,
+    /// Its worker is there, with too few chains, or too few parents near.
+    LinksShort,
+}
+
+impl TargetState {
+    /// Every state.
+    pub const ALL: [Self; 4] = [Self::Held, Self::NoWorker, Self::Away, Self::LinksShort];
+
+    /// The name that tables use.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::NoWorker => "no_worker",
+            Self::Away => "away",
+            Self::LinksShort => "links_short",
+        }
+    }
 }
 
 impl ConnectivitySample {

@@ -282,6 +282,10 @@ impl Recorder {
                 .judge
                 .as_ref()
                 .map_or_else(Vec::new, |judge| judge.mission.links(scene)),
+            targets: self
+                .judge
+                .as_ref()
+                .map_or_else(Vec::new, |judge| judge.mission.stands(scene)),
         });
         self.series.sample(now, &self.traffic);
         self.trajectories

@@ -6,6 +6,7 @@ use comfy_table::{CellAlignment, ContentArrangement, Table};
 
 use super::failures;
 use super::layout::{Page, RULED, WIDTH};
+use super::missed::{self, Asked};
 use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
 use super::spread;
 use super::surprises;
@@ -20,6 +21,8 @@ pub struct Input<'a> {
     pub question: Option<&'a str>,
     /// The figures.
     pub summary: &'a Summary,
+    /// What the mission asks for, if there is one with targets.
+    pub asked: Option<&'a Asked>,
     /// Length of a control step, seconds.
     pub control_period_s: f64,
     /// Whether robots ran a failure detector.
@@ -105,6 +108,11 @@ fn outcome(page: &mut Page, input: &Input) {
         "robots used",
         &format!("{} on average", estimate(&summary.robots_used.estimate, figure)),
     );
+    let mut name = "missed";
+    for sentence in missed::sentences(summary, input.asked) {
+        page.entry(name, &sentence);
+        name = "";
+    }
 }
 
 fn bandwidth(page: &mut Page, summary: &Summary) {

@@ -16,6 +16,7 @@ mod generated;
 mod gossip;
 mod limits;
 mod lines;
+mod needs;
 mod overrides;
 mod path;
 mod read;
@@ -42,7 +43,7 @@ use serde::{Deserialize, Serialize};
 use crate::engine::Span;
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
-use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
+use crate::motion::{ArenaConfig, DeployConfig, MotionConfig, Site};
 use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
@@ -136,6 +137,18 @@ impl Scenario {
         Circumstances {
             robots: self.swarm.robots as usize,
             status_interval: self.gossip.status.longest_pause(period),
+        }
+    }
+
+    /// Where its robots are deployed, and by which draws.
+    #[must_use]
+    pub fn site(&self) -> Site<'_> {
+        Site {
+            deploy: &self.swarm.deploy,
+            arena: &self.arena,
+            robots: self.swarm.robots,
+            body_radius: self.motion.body_radius.get(),
+            seed: self.seed,
         }
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use desim::metrics::{Estimate, Outcome, Summary, TrialRecord};
 use desim::predict::{Holds, Prediction, Surprise};
-use desim::report::{Input, Speed, terminal};
+use desim::report::{Asked, Input, Speed, terminal};
 
 use crate::fixture::record;
 
@@ -21,6 +21,10 @@ fn report_with(records: &[TrialRecord], surprises: &[Surprise], colour: bool) ->
             "Does the backbone still reach its targets when one frame in five is lost on its way to a robot?",
         ),
         summary: &Summary::of("loss20", &TOPICS, &ROLES, records),
+        asked: Some(&Asked {
+            links: vec![2, 2],
+            robots: 9,
+        }),
         control_period_s: 0.1,
         surprises,
         speed: Speed {

@@ -6,6 +6,7 @@ pub(super) mod bandwidth;
 pub(super) mod detection;
 pub(super) mod faults;
 pub(super) mod frames;
+mod missed;
 mod quantity;
 pub(super) mod spread;
 
@@ -13,6 +14,7 @@ pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth
 pub use detection::{Detection, Failures, Suspicions};
 pub use faults::{FaultSummary, Healed, HealingSummary, HealingTime};
 pub use frames::{Fates, Frames};
+pub use missed::{MissedSummary, MissedTarget};
 pub use quantity::{Measured, Named, Quantity, Unit};
 pub use spread::{Duplicates, SpreadSummary, SpreadTime};
 
@@ -44,6 +46,9 @@ pub struct Summary {
     pub completion_ratio: Measured,
     /// Steps to completion, trials that did not complete counted as censored.
     pub steps_to_completion: StepsToCompletion,
+    /// Why missions failed; absent if none did, or nothing was sampled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missed: Option<MissedSummary>,
     /// Frames by fate.
     pub frames: Frames,
     /// Copies delivered over copies offered: mean over trials.
@@ -136,6 +141,7 @@ impl Summary {
             digest: digest(records),
             completion_ratio: ratio(proportion(completed, with_mission)),
             steps_to_completion: StepsToCompletion::of(records),
+            missed: MissedSummary::of(records),
             frames: Frames::of(topics, records),
             delivery_ratio: ratio(mean_over_trials(records, frames::delivery_ratio)),
             latency_s: Latency::of(records),

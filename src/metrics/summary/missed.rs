@@ -1,0 +1,165 @@
+//! Why missions failed: which targets were missed, for how long, and what stood in the way. It follows from the samples.
+
+use serde::{Deserialize, Serialize};
+
+use super::quantity::Named;
+use crate::engine::Span;
+use crate::metrics::record::{ConnectivitySample, Outcome, TargetState, TrialRecord};
+
+/// What stood in the way, by the names of `summary.json`.
+const WHY: [&str; 5] = ["no_worker", "held_up", "on_its_way", "links_short", "too_late"];
+/// A worker whose way shrank by so much over the last tenth of a trial was still on it.
+const SHRINKS: f64 = 0.95;
+
+/// Why missions failed, over the trials that did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MissedSummary {
+    /// Trials that did not complete their mission, and were sampled.
+    pub failed: u64,
+    /// How long they lasted, median over them, seconds.
+    pub lasted_s: f64,
+    /// Live robots at their end, median over them.
+    pub robots_alive: f64,
+    /// The targets for which they failed, in order.
+    pub targets: Vec<MissedTarget>,
+}
+
+/// A target for which missions failed: it was never held, or, where all were at some time, not at the end; or, where all were
+/// then, it was held last, and not for long enough.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MissedTarget {
+    /// Number of the target, from 0.
+    pub target: u32,
+    /// Failed trials in which it was missed. What follows is over them.
+    pub trials: u64,
+    /// How long it was not held, all together, median, seconds.
+    pub missed_s: f64,
+    /// Trials by what stood in its way at last: `no_worker`; `held_up`: its worker came no nearer; `on_its_way`: its worker still came
+    /// nearer; `links_short`: its worker was there, and had too few links; `too_late`: it was held, and not for long enough.
+    pub why: Named<u64>,
+    /// The most links it had in the end, where links were short: median.
+    pub links: Option<f64>,
+    /// How near a worker ever was, median, metres; absent where there never was one.
+    pub nearest_m: Option<f64>,
+    /// How near one was at the end, median, metres; absent where there was none.
+    pub at_end_m: Option<f64>,
+}
+
+/// A target in one failed trial.
+struct Miss {
+    target: usize,
+    missed_s: f64,
+    why: usize,
+    links: Option<f64>,
+    nearest_m: Option<f64>,
+    at_end_m: Option<f64>,
+}
+
+impl MissedSummary {
+    /// Why those of `records` failed that did; `None` if none did, or nothing is known of their targets.
+    #[must_use]
+    pub fn of(records: &[TrialRecord]) -> Option<Self> {
+        let failed = |record: &&TrialRecord| {
+            let sample = record.connectivity.first();
+            record.outcome == Outcome::Censored && sample.is_some_and(|sample| !sample.targets.is_empty())
+        };
+        let failed: Vec<&TrialRecord> = records.iter().filter(failed).collect();
+        let alive = failed
+            .iter()
+            .map(|record| (record.robots.len() - record.failed_at_end().len()) as f64);
+        let misses: Vec<Miss> = failed.iter().flat_map(|record| misses(record)).collect();
+        let count = misses.iter().map(|miss| miss.target + 1).max().unwrap_or(0);
+        let targets = (0..count).filter_map(|target| MissedTarget::of(target, &misses));
+        Some(Self {
+            failed: failed.len() as u64,
+            lasted_s: middle(failed.iter().map(|record| record.simulated.as_secs()))?,
+            robots_alive: middle(alive)?,
+            targets: targets.collect(),
+        })
+    }
+}
+
+impl MissedTarget {
+    fn of(target: usize, misses: &[Miss]) -> Option<Self> {
+        let own = || misses.iter().filter(|miss| miss.target == target);
+        Some(Self {
+            target: target as u32,
+            trials: own().count() as u64,
+            missed_s: middle(own().map(|miss| miss.missed_s))?,
+            why: Named::of(WHY, |place| own().filter(|miss| miss.why == place).count() as u64),
+            links: middle(own().filter_map(|miss| miss.links)),
+            nearest_m: middle(own().filter_map(|miss| miss.nearest_m)),
+            at_end_m: middle(own().filter_map(|miss| miss.at_end_m)),
+        })
+    }
+}
+
+/// The targets for which a trial failed.
+fn misses(record: &TrialRecord) -> Vec<Miss> {
+    let samples = &record.connectivity;
+    let Some(last) = samples.last() else { return Vec::new() };
+    let held = |sample: &ConnectivitySample, target: usize| sample.targets[target].state == TargetState::Held;
+    let all = 0..last.targets.len();
+    let never = all
+        .clone()
+        .filter(|target| !samples.iter().any(|sample| held(sample, *target)));
+    let mut blocking: Vec<usize> = never.collect();
+    if blocking.is_empty() {
+        blocking = all.clone().filter(|target| !held(last, *target)).collect();
+    }
+    if blocking.is_empty() {
+        let since = |target: usize| samples.iter().rev().take_while(|sample| held(sample, target)).count();
+        blocking = all.min_by_key(|target| since(*target)).into_iter().collect();
+    }
+    blocking.into_iter().map(|target| miss(record, target)).collect()
+}
+
+fn miss(record: &TrialRecord, target: usize) -> Miss {
+    let samples = &record.connectivity;
+    let state = |sample: &ConnectivitySample| sample.targets[target].state;
+    let ends = samples.iter().skip(1).map(|sample| sample.at).chain([record.simulated]);
+    let spans = samples
+        .iter()
+        .zip(ends)
+        .filter(|(sample, _)| state(sample) != TargetState::Held);
+    let missed = spans.fold(Span::ZERO, |sum, (sample, end)| sum + end.since(sample.at));
+    // What stood in the way since it was held last.
+    let stretch = samples
+        .iter()
+        .rev()
+        .take_while(|sample| state(sample) != TargetState::Held);
+    let stretch: Vec<&ConnectivitySample> = stretch.collect();
+    let times = |wanted: TargetState| stretch.iter().filter(|sample| state(sample) == wanted).count();
+    let hindrances = [TargetState::NoWorker, TargetState::Away, TargetState::LinksShort];
+    // Of equals the last, which is the nearest to success.
+    let most = hindrances.into_iter().max_by_key(|hindrance| times(*hindrance));
+    let way = |back: usize| stretch.get(back).and_then(|sample| sample.targets[target].worker_m);
+    let why = match most.filter(|_| !stretch.is_empty()) {
+        None | Some(TargetState::Held) => 4,
+        Some(TargetState::NoWorker) => 0,
+        Some(TargetState::LinksShort) => 3,
+        Some(TargetState::Away) => match (way(0), way((samples.len() / 10).max(1))) {
+            (Some(now), Some(before)) if now < SHRINKS * before => 2,
+            _ => 1,
+        },
+    };
+    let short = stretch.iter().filter(|sample| state(sample) == TargetState::LinksShort);
+    let links = short.filter_map(|sample| sample.links.get(target)).max();
+    let ways = samples.iter().filter_map(|sample| sample.targets[target].worker_m);
+    Miss {
+        target,
+        missed_s: missed.as_secs(),
+        why,
+        links: links.map(|links| f64::from(*links)),
+        nearest_m: ways.min_by(f64::total_cmp),
+        at_end_m: samples.last().and_then(|sample| sample.targets[target].worker_m),
+    }
+}
+
+/// The median, of an even number the mean of the middle two.
+fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let last = values.len().checked_sub(1)?;
+    Some(f64::midpoint(values[last / 2], values[last.div_ceil(2)]))
+}
