@@ -66,7 +66,9 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::optional_f64("trusted_s", |row| row.suspicion()?.until.map(SimTime::as_secs)),
         Col::optional_f64("mistake_duration_s", |row| row.suspicion()?.duration.map(Span::as_secs)),
         Col::optional_id("mistake_cut_off", |row| {
-            row.suspicion().filter(|event| event.duration.is_some()).map(|event| event.cut_off.into())
+            row.suspicion()
+                .filter(|event| event.duration.is_some())
+                .map(|event| event.cut_off.into())
         }),
         Col::optional_f64("detection_time_s", |row| match &row.event {
             Event::Failure(ObservedFailure {

@@ -288,7 +288,9 @@ impl Pair {
     fn resolve(&mut self, now: SimTime, outcome: FailureOutcome, tally: &mut Tally) {
         if let Some(failure) = self.failure.take() {
             let failure = &mut tally.failures[failure as usize];
-            let detected = self.suspicion.map(|suspicion| tally.suspicions[suspicion as usize].at.since(failure.at));
+            let detected = self
+                .suspicion
+                .map(|suspicion| tally.suspicions[suspicion as usize].at.since(failure.at));
             failure.outcome = detected.map_or(outcome, FailureOutcome::Detected);
             failure.watched = detected.unwrap_or_else(|| now.since(failure.at));
         }
@@ -438,7 +440,10 @@ mod tests {
         let (record, outcomes) = bench.outcomes();
         assert_eq!(outcomes, [FailureOutcome::Detected(Span::ZERO)]);
         let suspicion = &record.suspicions[0];
-        assert_eq!((suspicion.duration, suspicion.cut_off), (Some(Span::from_secs(0.5)), true));
+        assert_eq!(
+            (suspicion.duration, suspicion.cut_off),
+            (Some(Span::from_secs(0.5)), true)
+        );
         assert_time(&record, 9.0, 0.5);
     }
 
