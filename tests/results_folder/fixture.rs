@@ -279,6 +279,7 @@ fn state(robot: u32, odd: f64) -> RobotState {
         role: role(robot),
         target,
         parents,
+        steps: 600 - u64::from(robot % 2),
     }
 }
 

@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::contrasts::{Grid, Levels};
 use super::{Design, Trials, Verdict};
-use crate::metrics::statistics::{Estimate, Part, Tested, mean, paired_permutation, ratio_of_sums, sign_permutation};
+use crate::metrics::statistics::{
+    Estimate, Estimator, Part, Tested, difference, mean, paired_permutation, ratio_of_sums, sign_permutation,
+};
 
 /// A figure's mean over all settings in which a factor has one level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -128,10 +130,10 @@ impl Parts {
 
 /// The mean of what pairs of trials differ by, with its interval; nothing where one of them has no value.
 fn paired_difference(against: &[f64], at: &[f64]) -> Estimate {
-    let differences: Vec<f64> = against.iter().zip(at).map(|(against, at)| at - against).collect();
-    let n = differences.len() as u64;
-    if differences.iter().all(|difference| difference.is_finite()) {
-        mean(&differences)
+    let plain = |values: &[f64]| values.iter().map(|&value| [value, 1.0]).collect::<Vec<Part>>();
+    let n = against.len() as u64;
+    if against.iter().chain(at).all(|value| value.is_finite()) {
+        difference(Estimator::Mean, [&plain(against), &plain(at)], true)
     } else {
         Estimate {
             n,

@@ -2,6 +2,7 @@
 
 use crate::geometry::Vec2;
 use crate::motion::{DeployConfig, Reach, reach};
+use crate::protocol::CompletionConfig;
 use crate::protocol::backbone::{BackboneConfig, TargetsConfig};
 use crate::scenario::checks::Problem;
 use crate::scenario::{ProtocolConfig, Scenario};
@@ -60,14 +61,15 @@ fn micrometres(metres: f64) -> f64 {
     (metres * 1e6).round() / 1e6
 }
 
-/// Swarms too small for their mission.
+/// Swarms too small for their mission, where all of it is to hold at once.
 fn robots(scenario: &Scenario, backbone: &BackboneConfig) -> Option<Problem> {
     let (needed, there) = (backbone.robots_needed(), scenario.swarm.robots);
-    (needed > there as usize).then(|| {
+    let at_once = scenario.completion() != CompletionConfig::EachVisited;
+    (at_once && needed > there as usize).then(|| {
         let message = format!(
             "the mission takes {needed} robots at least, for a root, a worker a target and their chains, and there are {there}"
         );
-        let help = "make `swarm.robots` more, or ask for fewer targets or links, or for nearer ones";
+        let help = "make `swarm.robots` more, ask for fewer targets or links or for nearer ones, or for `completion: EachVisited`";
         Problem::new("swarm.robots", message, help).with(&["protocol.targets"])
     })
 }
@@ -87,7 +89,7 @@ fn time(scenario: &Scenario, backbone: &BackboneConfig) -> Option<Problem> {
     let near = backbone.movement_threshold.get();
     let ways = backbone.targets().into_iter().map(|(target, _)| start(target) - near);
     let way = ways.fold(0.0, f64::max);
-    let (speed, hold) = (scenario.motion.max_speed.get(), scenario.metrics.hold.get());
+    let (speed, hold) = (scenario.motion.max_speed.get(), scenario.completion().hold());
     let least = way / speed + hold;
     let time_limit = scenario.time_limit.get();
     (least > time_limit).then(|| {
@@ -95,7 +97,7 @@ fn time(scenario: &Scenario, backbone: &BackboneConfig) -> Option<Problem> {
             "no trial can complete: the farthest target is {way:.2} m from where robots start, at {speed} m/s and held for {hold} s that takes {least:.0} s, and a trial ends at {time_limit} s"
         );
         let help = "make `time_limit` longer, `motion.max_speed` greater or the targets nearer";
-        let also = ["motion.max_speed", "protocol.targets", "metrics.hold", "swarm.deploy"];
+        let also = ["motion.max_speed", "protocol", "metrics.hold", "swarm.deploy"];
         Problem::new("time_limit", message, help).with(&also)
     })
 }
