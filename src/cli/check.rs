@@ -1,14 +1,16 @@
 //! `desim check`: says everything that is wrong with scenario and study files before they are run.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use super::output::{self, columns, style};
 use crate::export;
 use crate::predict::Preflight;
 use crate::report;
 use crate::scenario::{
-    Diagnostic, Override, Plan, Report, Scenario, Style, contents, is_study, load_study, parse, question, to_ron,
+    Diagnostic, Override, Plan, Report, Scenario, contents, is_study, load_study, parse, question, to_ron,
 };
+use crate::text::{clean, shown};
 
 /// What to say of a scenario that is well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +53,7 @@ pub fn check(files: &[PathBuf], overrides: &[String], say: Say, out: &mut dyn Wr
     match say {
         Say::Well => {
             for checked in &accepted {
-                writeln!(out, "{}", checked.line)?;
+                write!(out, "{}", report::message(&checked.line, columns(&io::stdout())))?;
             }
         }
         Say::Resolved => {
@@ -60,10 +62,10 @@ pub fn check(files: &[PathBuf], overrides: &[String], say: Say, out: &mut dyn Wr
             }
         }
         Say::Expected => {
-            let colour = style(&io::stdout()).colour;
+            let style = style(&io::stdout());
             for (index, (question, scenario)) in scenarios().enumerate() {
                 let apart = if index > 0 { "\n" } else { "" };
-                let text = report::preflight(&Preflight::of(scenario), question.as_deref(), colour);
+                let text = report::preflight(&Preflight::of(scenario), question.as_deref(), style);
                 write!(out, "{apart}{text}")?;
             }
         }
@@ -78,8 +80,7 @@ pub fn check(files: &[PathBuf], overrides: &[String], say: Say, out: &mut dyn Wr
 
 fn write_faults(faults: &Report, say: Say, out: &mut dyn Write) -> io::Result<()> {
     if say == Say::ExpectedJson {
-        let mut standard_error = io::stderr();
-        return write!(standard_error, "{}", faults.render(style(&standard_error)));
+        return write!(output::stderr(), "{}", faults.render(style(&io::stderr())));
     }
     write!(out, "{}", faults.render(style(&io::stdout())))
 }
@@ -124,7 +125,7 @@ fn read(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
         counted(scenario.swarm.robots, "robot"),
     );
     Ok(Checked {
-        line: format!("ok {}: {}, {trials}, {robots}", file.display(), scenario.name),
+        line: format!("ok {}: {}, {trials}, {robots}", shown(file), scenario.name),
         scenarios: vec![(question(&text), scenario)],
     })
 }
@@ -135,7 +136,7 @@ fn read_study(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
             message: format!(
                 "{}{} is a study, whose fields are not set from outside",
                 given.prefix(),
-                file.display()
+                shown(file)
             ),
             help: Some("check it without --set".to_owned()),
             path: None,
@@ -152,7 +153,7 @@ fn read_study(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
     Ok(Checked {
         line: format!(
             "ok {}: {name}, a study of {} settings, {trials} trials",
-            file.display(),
+            shown(file),
             settings.len()
         ),
         scenarios: settings
@@ -164,15 +165,7 @@ fn read_study(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
 
 fn write_resolved(question: Option<&str>, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
     if let Some(question) = question {
-        writeln!(out, "// {question}")?;
+        writeln!(out, "// {}", clean(question))?;
     }
     write!(out, "{}", to_ron(scenario))
-}
-
-/// Colours where `stream` is a terminal, unless the user has switched them off.
-pub fn style(stream: &impl IsTerminal) -> Style {
-    Style {
-        colour: stream.is_terminal() && std::env::var_os("NO_COLOR").is_none(),
-        ..Style::PLAIN
-    }
 }

@@ -1,11 +1,12 @@
 //! Finished results on standard output.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::ValueEnum;
 
 use super::failure::Failure;
+use super::output;
 use crate::export::{self, StudyFolder, TrialEntry};
 use crate::metrics::Summary;
 use crate::metrics::comparison::Comparison;
@@ -46,7 +47,7 @@ impl Finished<'_> {
     /// # Errors
     /// If standard output cannot be written to.
     pub fn print(&self, format: Format) -> Result<(), Failure> {
-        let mut out = io::stdout().lock();
+        let mut out = output::stdout();
         match format {
             Format::Json => out.write_all(&export::json(self.summary))?,
             Format::Text => out.write_all(self.text().as_bytes())?,
@@ -68,7 +69,7 @@ impl Finished<'_> {
             },
             folder: &self.folders,
             files: &self.files,
-            colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+            style: output::style(&io::stdout()),
         })
     }
 }
@@ -78,7 +79,7 @@ impl Finished<'_> {
 /// # Errors
 /// If standard output cannot be written to.
 pub fn print_comparison(comparison: &Comparison, folder: &StudyFolder, format: Format) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
+    let mut out = output::stdout();
     match format {
         Format::Json => out.write_all(&export::json(comparison))?,
         Format::Text => {
@@ -86,7 +87,7 @@ pub fn print_comparison(comparison: &Comparison, folder: &StudyFolder, format: F
                 comparison,
                 folder: folder.path(),
                 files: &folder.files(),
-                colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+                style: output::style(&io::stdout()),
             });
             out.write_all(text.as_bytes())?;
         }

@@ -26,10 +26,11 @@ mod study;
 mod token;
 mod tree;
 
+pub use crate::text::Style;
 pub use file::{contents, json_schema, load, question, to_ron};
 pub use overrides::Override;
 pub use read::parse;
-pub use report::{Diagnostic, Place, Report, Style};
+pub use report::{Diagnostic, Place, Report};
 pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,

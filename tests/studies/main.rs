@@ -2,6 +2,7 @@
 
 mod command;
 mod files;
+mod harm;
 mod report;
 #[path = "../shipped/mod.rs"]
 mod shipped;
