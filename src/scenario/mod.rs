@@ -28,10 +28,11 @@ mod token;
 mod tree;
 mod warnings;
 
+pub use crate::text::Style;
 pub use file::{contents, json_schema, load, question, to_ron};
 pub use overrides::Override;
 pub use read::{examine, parse};
-pub use report::{Diagnostic, Place, Report, Style, Warnings};
+pub use report::{Diagnostic, Place, Report, Warnings};
 pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,

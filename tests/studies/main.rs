@@ -3,6 +3,7 @@
 mod command;
 mod factors;
 mod files;
+mod harm;
 mod report;
 #[path = "../shipped/mod.rs"]
 mod shipped;

@@ -187,11 +187,11 @@ pub fn effects(page: &mut Page, comparison: &Comparison, figure: &Figure) {
             },
         ]
     });
-    put(page, header.to_vec(), rows);
+    put(page, &header, rows);
     if comparison.interactions_in(&figure.key).next().is_none() {
         return;
     }
-    page.line("");
+    page.gap();
     let header = ["", "largest difference\nof differences", "p adjusted", ""].map(str::to_owned);
     let rows = comparison.interactions_in(&figure.key).map(|interaction| {
         let [first, second] = &interaction.factors;
@@ -209,5 +209,5 @@ pub fn effects(page: &mut Page, comparison: &Comparison, figure: &Figure) {
             verdict.to_owned(),
         ]
     });
-    put(page, header.to_vec(), rows);
+    put(page, &header, rows);
 }
