@@ -12,7 +12,7 @@ use super::scenario::{failure, threads};
 use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
 use crate::export::{self, Contents, Folder, Manifest, Pictures, StudyFolder, StudyManifest};
 use crate::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials, widest};
-use crate::metrics::figures::{Figure, Registry, Sample};
+use crate::metrics::figures::{Figure, Registry, Sample, pool};
 use crate::report;
 use crate::scenario::{Plan, Scenario, Setting};
 use crate::simulation::{DriverKind, TrialError, run_trial};
@@ -239,7 +239,7 @@ impl<'a> Settings<'a> {
     fn stopping(&self, width: f64) -> Stopping {
         let design = self.design();
         let figure = design.compared.first().copied().unwrap_or(0);
-        let widest = widest(&self.trials(), figure);
+        let widest = widest(&self.figures[figure], &self.trials(), figure);
         let trials = self.cells.iter().map(|cell| cell.scenario.trials).max().unwrap_or(0);
         Stopping {
             figure: self.figures[figure].key.clone(),
@@ -262,9 +262,10 @@ impl<'a> Settings<'a> {
                 .places
                 .iter()
                 .map(|&place| {
-                    (0..cell.scenario.trials)
-                        .filter_map(|trial| Some(cell.told.get(&trial)?[place]))
-                        .collect()
+                    let told = (0..cell.scenario.trials).filter_map(|trial| cell.told.get(&trial));
+                    let mut samples: Vec<Sample> = told.map(|told| told[place].clone()).collect();
+                    pool(&mut samples);
+                    samples
                 })
                 .collect(),
         };

@@ -76,16 +76,20 @@ impl TrialRecord {
         (!self.connectivity.is_empty()).then(|| connected as f64 / self.connectivity.len() as f64)
     }
 
-    /// Each robot's bytes a control step, of whatever `bytes` takes from its rows; a robot without traffic counts with 0.
+    /// Each robot's bytes a control step of its own, of whatever `bytes` takes from its rows; a robot without traffic counts with 0.
+    /// Steps that it missed, being down, count.
     #[must_use]
     pub fn bytes_per_step(&self, bytes: impl Fn(&TrafficRow) -> u64) -> Vec<f64> {
         let mut sums = vec![0; self.robots.len()];
         for row in &self.traffic {
             sums[row.robot.index()] += bytes(row);
         }
-        // A run too short for a single control step lasts no longer than one.
-        let steps = self.steps.max(1) as f64;
-        sums.into_iter().map(|sum| sum as f64 / steps).collect()
+        // A run too short for a single control step of a robot lasts no longer than one.
+        let steps = self.robots.iter().map(|robot| robot.steps.max(1) as f64);
+        sums.into_iter()
+            .zip(steps)
+            .map(|(sum, steps)| sum as f64 / steps)
+            .collect()
     }
 
     /// The robots that failed at some time, each once, in order of ids.
@@ -368,4 +372,6 @@ pub struct RobotState {
     pub target: Option<u16>,
     /// The robots that it relies on to reach the root.
     pub parents: Vec<ActorId>,
+    /// Its control steps that were due in the trial. Robots with a phase of their own may have one fewer than others.
+    pub steps: u64,
 }

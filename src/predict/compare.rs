@@ -67,7 +67,7 @@ fn compared(prediction: &Prediction, summary: &Summary) -> Option<Compared> {
     let throughout = prediction.holds == Holds::Throughout;
     let plain = |measured: Estimate| throughout.then_some(Compared { measured, slack: 0.0 });
     match prediction.name {
-        "loss_ratio" => plain(lost(summary)?),
+        "loss_ratio" => plain(lost(summary)),
         "latency_s" => plain(summary.latency_s.mean),
         "status_tx_bytes_per_step" => plain(status(summary)?.directions.tx_bytes_per_step.mean),
         "status_rx_bytes_per_step" => plain(status(summary)?.directions.rx_bytes_per_step.mean),
@@ -99,18 +99,16 @@ fn compared(prediction: &Prediction, summary: &Summary) -> Option<Compared> {
     }
 }
 
-/// The share of copies lost, those under way at the end left out.
-fn lost(summary: &Summary) -> Option<Estimate> {
-    let fates = &summary.frames.total;
-    let in_flight = (fates.offered > 0).then(|| fates.in_flight as f64 / fates.offered as f64)?;
+/// The share of copies lost.
+fn lost(summary: &Summary) -> Estimate {
     let delivered = summary.delivery_ratio.estimate;
-    let lost = |delivered: f64| 1.0 - delivered - in_flight;
+    let lost = |delivered: f64| 1.0 - delivered;
     let [low, high] = delivered.ci95.map(|end| end.map(lost));
-    Some(Estimate {
+    Estimate {
         value: delivered.value.map(lost),
         ci95: [high, low],
         ..delivered
-    })
+    }
 }
 
 fn status(summary: &Summary) -> Option<&TopicBandwidth> {

@@ -6,7 +6,7 @@ use comfy_table::{CellAlignment, ContentArrangement, Table};
 
 use super::failures;
 use super::layout::{Page, RULED, WIDTH};
-use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
+use super::number::{NOTHING, count, estimate, figure, lasted, maybe, percent, seconds};
 use super::spread;
 use super::surprises;
 use crate::metrics::Summary;
@@ -239,8 +239,8 @@ fn radio(page: &mut Page, summary: &Summary) {
         count(fates.in_flight)
     );
     page.entry("offered", &balance);
-    if let Some(duplicates) = &summary.duplicates {
-        let share = estimate(&duplicates.total, percent);
+    if summary.duplicates.any() {
+        let share = estimate(&summary.duplicates.total, percent);
         page.entry(
             "duplicates",
             &format!("{share} of what was delivered told its receiver nothing new"),
@@ -257,7 +257,7 @@ fn connectivity(page: &mut Page, summary: &Summary) {
     }
     let least = format!(
         "{} median of trials, {} at worst",
-        estimate(&lambda2.estimate, figure),
+        estimate(&lambda2.median, figure),
         maybe(lambda2.min)
     );
     page.entry("least λ₂", &least);
@@ -286,10 +286,10 @@ fn detection(page: &mut Page, detection: &Detection) {
     let mistakes = match detection.mistakes.value {
         0 => "none".to_owned(),
         mistakes => format!(
-            "{}: of a pair of robots one every {} s, for {} s",
+            "{}: of a pair of robots one every {} s, for {}",
             count(mistakes),
             estimate(&detection.mistake_recurrence_s.estimate, figure),
-            estimate(&detection.mistake_duration_s.estimate, figure)
+            lasted(&detection.mistake_duration_s)
         ),
     };
     page.entry("mistakes", &mistakes);
@@ -299,11 +299,11 @@ fn detection(page: &mut Page, detection: &Detection) {
         &format!("robots that were well were trusted {accuracy} of the time"),
     );
     if failures.observed > 0 {
-        let time = estimate(&detection.detection_time_s.estimate, figure);
         let detected = format!(
-            "{} of {} detected by those who watched, after {time} s on average",
+            "{} of {} detected by those who watched, after {}",
             count(failures.detected),
-            count(failures.observed)
+            count(failures.observed),
+            lasted(&detection.detection_time_s)
         );
         page.entry("failures", &detected);
     }

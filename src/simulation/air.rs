@@ -362,7 +362,8 @@ impl<P: Protocol> Air<P> {
                 if reception.at <= end {
                     record_delivery::<P>(ActorId(receiver as u32), reception, recorder);
                 } else {
-                    recorder.in_flight(P::topic(reception.frame.message.borrow()));
+                    let latency = reception.at.since(reception.frame.sent_at);
+                    recorder.in_flight(P::topic(reception.frame.message.borrow()), latency);
                 }
             }
         }

@@ -92,7 +92,8 @@ fn detection(trial: u32) -> DetectionRecord {
             out_of_range: number,
             ..Missed::default()
         },
-        duration: (number == 1).then(|| Span::from_secs(0.7 + f64::from(trial) / 10.0)),
+        duration: (number == 1 || number >= 4).then(|| Span::from_secs(0.7 + f64::from(number + trial) / 10.0)),
+        cut_off: number == 5,
     };
     let outcomes = [
         FailureOutcome::Detected(Span::from_secs(3.2 + f64::from(trial) / 7.0)),
@@ -106,6 +107,10 @@ fn detection(trial: u32) -> DetectionRecord {
         observer: ActorId(observer),
         at: SimTime::from_secs(7.0),
         outcome,
+        watched: match outcome {
+            FailureOutcome::Detected(after) => after,
+            _ => Span::from_secs(1.5 + f64::from(observer)),
+        },
     };
     DetectionRecord {
         pairs: 20,
@@ -257,6 +262,7 @@ fn state(robot: u32, odd: f64) -> RobotState {
         role: role(robot),
         target,
         parents,
+        steps: 600 - u64::from(robot % 2),
     }
 }
 

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use desim::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials};
-use desim::metrics::figures::{Better, Figure, Sample};
+use desim::metrics::figures::{Better, COMPLETION, Figure, Sample};
+use desim::metrics::statistics::Estimator;
 use desim::report::{ComparisonInput, comparison, describe, study_page};
 
 fn figure(key: &str, name: &str, unit: &'static str, better: Better, is_ratio: bool) -> Figure {
@@ -13,6 +14,11 @@ fn figure(key: &str, name: &str, unit: &'static str, better: Better, is_ratio: b
         unit: unit.into(),
         better,
         is_ratio,
+        estimator: match key {
+            COMPLETION => Estimator::Count,
+            _ if is_ratio => Estimator::Rate,
+            _ => Estimator::Mean,
+        },
     }
 }
 
@@ -24,6 +30,7 @@ fn made_up(reference: Option<usize>, stopping: Option<Stopping>) -> Comparison {
             Sample {
                 part: [steps.min(limit), 1.0],
                 is_censored: steps > limit,
+                ..Sample::default()
             }
         };
         (0..12).map(sample).collect::<Vec<_>>()
@@ -31,14 +38,14 @@ fn made_up(reference: Option<usize>, stopping: Option<Stopping>) -> Comparison {
     let bytes = |mean: f64| {
         let sample = move |trial: u32| Sample {
             part: [mean + f64::from(trial % 5) / 50.0, 1.0],
-            is_censored: false,
+            ..Sample::default()
         };
         (0..12).map(sample).collect::<Vec<_>>()
     };
     let mistakes = |rate: f64| {
         let sample = move |trial: u32| Sample {
             part: [(rate * f64::from(3 + trial % 3)).round(), 5000.0],
-            is_censored: false,
+            ..Sample::default()
         };
         (0..12).map(sample).collect::<Vec<_>>()
     };

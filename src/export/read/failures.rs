@@ -14,7 +14,11 @@ pub fn detection(records: &mut Records, table: &Table) -> Result<(), Wrong> {
     let (verdict, cause) = (table.texts("verdict")?, table.texts("cause")?);
     let (heard, trusted) = (table.optional_numbers("heard_s")?, table.optional_numbers("trusted_s")?);
     let mistake = table.optional_numbers("mistake_duration_s")?;
-    let detected = table.optional_numbers("detection_time_s")?;
+    let cut_off = table.optional_ids("mistake_cut_off")?;
+    let (detected, watched) = (
+        table.optional_numbers("detection_time_s")?,
+        table.optional_numbers("watched_s")?,
+    );
     let lost = by_cause(|cause| table.optional_ids(&format!("missed_{cause}")))?;
     let missed = ["missed_out_of_range", "missed_under_way"].map(|name| table.optional_ids(name));
     let [out_of_range, under_way] = missed;
@@ -43,12 +47,14 @@ pub fn detection(records: &mut Records, table: &Table) -> Result<(), Wrong> {
                     under_way: under_way[row].unwrap_or(0),
                 },
                 duration: mistake[row].map(Span::from_secs),
+                cut_off: cut_off[row] == Some(1),
             }),
             "failure" => detection.failures.push(ObservedFailure {
                 subject,
                 observer,
                 at,
                 outcome: outcome_called(&verdict[row], detected[row])?,
+                watched: Span::from_secs(watched[row].unwrap_or(0.0)),
             }),
             other => return Err(format!("it has an unknown event `{other}`")),
         }

@@ -39,6 +39,7 @@ pub fn robots(records: &mut Records, table: &Table) -> Result<(), Wrong> {
         table.numbers("heading_rad")?,
     );
     let (target, parents) = (table.optional_ids("target")?, table.lists("parents")?);
+    let steps = table.counts("steps")?;
     for row in 0..trial.len() {
         let role = records.names.role(&role[row])?;
         records.of(trial[row])?.robots.push(RobotState {
@@ -49,6 +50,7 @@ pub fn robots(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             role,
             target: target[row].and_then(|target| u16::try_from(target).ok()),
             parents: parents[row].iter().copied().map(ActorId).collect(),
+            steps: steps[row],
         });
     }
     Ok(())

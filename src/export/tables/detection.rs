@@ -65,12 +65,21 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::optional_f64("heard_s", |row| row.suspicion().map(|event| event.heard.as_secs())),
         Col::optional_f64("trusted_s", |row| row.suspicion()?.until.map(SimTime::as_secs)),
         Col::optional_f64("mistake_duration_s", |row| row.suspicion()?.duration.map(Span::as_secs)),
+        Col::optional_id("mistake_cut_off", |row| {
+            row.suspicion()
+                .filter(|event| event.duration.is_some())
+                .map(|event| event.cut_off.into())
+        }),
         Col::optional_f64("detection_time_s", |row| match &row.event {
             Event::Failure(ObservedFailure {
                 outcome: FailureOutcome::Detected(after),
                 ..
             }) => Some(after.as_secs()),
             _ => None,
+        }),
+        Col::optional_f64("watched_s", |row| match &row.event {
+            Event::Failure(failure) => Some(failure.watched.as_secs()),
+            Event::Suspicion(_) => None,
         }),
     ];
     columns.extend(LossCause::ALL.iter().enumerate().map(|(index, cause)| {

@@ -148,7 +148,7 @@ fn ratios_of_sums_have_effects_too_and_a_setting_without_a_value_has_none() {
             f64::from((levels[0] * 3 + 1) * (1 + trial % 3)),
             f64::from(50 + 10 * (trial % 2)),
         ],
-        is_censored: false,
+        ..Sample::default()
     };
     let of = |levels: &Vec<u32>| setting(levels, vec![(0..12).map(|number| trial(levels, number)).collect()]);
     let mut trials: Vec<Trials> = settings.iter().map(of).collect();

@@ -41,8 +41,11 @@ pub struct Suspicion {
     pub cause: Cause,
     /// What became of the statuses that the observer should have heard.
     pub missed: Missed,
-    /// Duration of a mistake that ended in trust, neither robot failing meanwhile.
+    /// How long a mistake lasted: until trust, or until it was cut off. `None` of what is no mistake.
     pub duration: Option<Span>,
+    /// Whether a mistake was cut off before it could end in trust: by the end of the run, by a failure of the subject or of the
+    /// observer, or because the pair was no longer within range. It would have lasted longer.
+    pub cut_off: bool,
 }
 
 impl Suspicion {
@@ -171,6 +174,9 @@ pub struct ObservedFailure {
     pub at: SimTime,
     /// What the observer made of it.
     pub outcome: FailureOutcome,
+    /// How long it was watched: until it was detected, else until the robot was well again, the observer could hear no more, or
+    /// the run ended.
+    pub watched: Span,
 }
 
 /// What an observer made of a failure.

@@ -112,6 +112,7 @@ impl Scorer {
                     },
                     missed,
                     duration: None,
+                    cut_off: false,
                 };
                 self.suspect(suspicion);
             }
@@ -150,12 +151,10 @@ impl Scorer {
         let able = self.is_able(observer, subject);
         let pair = find(&mut self.pairs, observer, subject);
         pair.settle(now, &mut self.tally);
+        pair.end_mistake(now, false, &mut self.tally);
         if let Some(suspicion) = pair.suspicion.take() {
-            let suspicion = &mut self.tally.suspicions[suspicion as usize];
-            suspicion.until = Some(now);
-            suspicion.duration = pair.mistaken.then(|| now.since(suspicion.at));
+            self.tally.suspicions[suspicion as usize].until = Some(now);
         }
-        pair.mistaken = false;
         pair.resume(now, able);
     }
 
@@ -186,9 +185,9 @@ impl Scorer {
         let pair = find(&mut self.pairs, observer, subject);
         let was_monitored = pair.since < SimTime::NEVER;
         pair.settle(now, &mut self.tally);
-        pair.mistaken = false;
+        pair.end_mistake(now, true, &mut self.tally);
         if self.health[subject.index()].sends {
-            pair.resolve(FailureOutcome::Recovered, &mut self.tally);
+            pair.resolve(now, FailureOutcome::Recovered, &mut self.tally);
         } else if was_monitored {
             pair.failure = Some(self.tally.failures.len() as u32);
             self.tally.failures.push(ObservedFailure {
@@ -196,6 +195,7 @@ impl Scorer {
                 observer,
                 at: now,
                 outcome: FailureOutcome::Undetected,
+                watched: Span::ZERO,
             });
         }
         pair.resume(now, able);
@@ -206,9 +206,9 @@ impl Scorer {
         let hears = self.health[observer.index()].hears;
         for pair in &mut self.pairs[observer.index()] {
             pair.settle(now, &mut self.tally);
-            pair.mistaken = false;
+            pair.end_mistake(now, true, &mut self.tally);
             if !hears {
-                pair.resolve(FailureOutcome::ObserverFailed, &mut self.tally);
+                pair.resolve(now, FailureOutcome::ObserverFailed, &mut self.tally);
             }
             pair.resume(now, hears && self.health[pair.subject.index()].sends);
         }
@@ -218,7 +218,8 @@ impl Scorer {
     pub fn finish(mut self, end: SimTime) -> DetectionRecord {
         for pair in self.pairs.iter_mut().flatten() {
             pair.settle(end, &mut self.tally);
-            pair.resolve(FailureOutcome::Undetected, &mut self.tally);
+            pair.end_mistake(end, true, &mut self.tally);
+            pair.resolve(end, FailureOutcome::Undetected, &mut self.tally);
         }
         DetectionRecord {
             pairs: self.pairs.iter().map(|pairs| pairs.len() as u64).sum(),
@@ -274,13 +275,24 @@ impl Pair {
         self.since = if able && tells { now } else { SimTime::NEVER };
     }
 
-    /// The failure ends: it was detected if the subject is suspected now, else the `outcome` is another.
-    fn resolve(&mut self, outcome: FailureOutcome, tally: &mut Tally) {
+    /// A mistake, if there is one, ends at `now`: in trust, or cut off.
+    fn end_mistake(&mut self, now: SimTime, cut_off: bool, tally: &mut Tally) {
+        if let (true, Some(suspicion)) = (std::mem::take(&mut self.mistaken), self.suspicion) {
+            let suspicion = &mut tally.suspicions[suspicion as usize];
+            suspicion.duration = Some(now.since(suspicion.at));
+            suspicion.cut_off = cut_off;
+        }
+    }
+
+    /// The failure ends at `now`: it was detected if the subject is suspected, else the `outcome` is another.
+    fn resolve(&mut self, now: SimTime, outcome: FailureOutcome, tally: &mut Tally) {
         if let Some(failure) = self.failure.take() {
             let failure = &mut tally.failures[failure as usize];
-            failure.outcome = self.suspicion.map_or(outcome, |suspicion| {
-                FailureOutcome::Detected(tally.suspicions[suspicion as usize].at.since(failure.at))
-            });
+            let detected = self
+                .suspicion
+                .map(|suspicion| tally.suspicions[suspicion as usize].at.since(failure.at));
+            failure.outcome = detected.map_or(outcome, FailureOutcome::Detected);
+            failure.watched = detected.unwrap_or_else(|| now.since(failure.at));
         }
     }
 }
@@ -420,15 +432,59 @@ mod tests {
     }
 
     #[test]
-    fn a_mistake_that_comes_true_is_a_detection_without_delay_and_has_no_duration() {
+    fn a_mistake_that_comes_true_is_a_detection_without_delay_and_is_cut_off() {
         let mut bench = Bench::new();
         bench.lose(7..10);
         bench.suspect(9.5, 6);
         bench.0.fault(at(10.0), SUBJECT, MUTE);
         let (record, outcomes) = bench.outcomes();
         assert_eq!(outcomes, [FailureOutcome::Detected(Span::ZERO)]);
-        assert_eq!(record.suspicions[0].duration, None);
+        let suspicion = &record.suspicions[0];
+        assert_eq!(
+            (suspicion.duration, suspicion.cut_off),
+            (Some(Span::from_secs(0.5)), true)
+        );
         assert_time(&record, 9.0, 0.5);
+    }
+
+    #[test]
+    fn mistakes_that_the_end_or_the_observers_own_failure_cuts_off_say_how_long_they_had_lasted() {
+        let mut ended = Bench::new();
+        ended.lose(25..29);
+        ended.suspect(28.5, 24);
+        let (record, _) = ended.outcomes();
+        let cut = |suspicion: &Suspicion| (suspicion.duration, suspicion.cut_off, suspicion.until);
+        assert_eq!(cut(&record.suspicions[0]), (Some(Span::from_secs(1.5)), true, None));
+
+        let mut deaf = Bench::new();
+        deaf.lose(4..6);
+        deaf.suspect(5.5, 3);
+        deaf.0.fault(at(7.25), OBSERVER, DEAF);
+        deaf.0.fault(at(9.0), OBSERVER, Health::WELL);
+        deaf.trust(10.0);
+        let (record, _) = deaf.outcomes();
+        assert_eq!(
+            cut(&record.suspicions[0]),
+            (Some(Span::from_secs(1.75)), true, Some(at(10.0))),
+            "trust after the failure says nothing of how long the mistake would have lasted"
+        );
+    }
+
+    #[test]
+    fn each_failure_says_how_long_it_was_watched() {
+        let mut detected = Bench::new();
+        detected.0.fault(at(10.0), SUBJECT, MUTE);
+        detected.suspect(13.5, 9);
+        assert_eq!(detected.outcomes().0.failures[0].watched, Span::from_secs(3.5));
+
+        let mut recovered = Bench::new();
+        recovered.0.fault(at(10.0), SUBJECT, MUTE);
+        recovered.0.fault(at(11.25), SUBJECT, Health::WELL);
+        assert_eq!(recovered.outcomes().0.failures[0].watched, Span::from_secs(1.25));
+
+        let mut late = Bench::new();
+        late.0.fault(at(29.0), SUBJECT, MUTE);
+        assert_eq!(late.outcomes().0.failures[0].watched, Span::from_secs(1.0));
     }
 
     #[test]
