@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use desim::metrics::{Estimate, Outcome, Summary, TrialRecord};
+use desim::motion::Reach;
 use desim::predict::{Holds, Prediction, Surprise};
 use desim::report::{Asked, Input, Speed, terminal};
 
@@ -23,6 +24,7 @@ fn report_with(records: &[TrialRecord], surprises: &[Surprise], colour: bool) ->
         summary: &Summary::of("loss20", &TOPICS, &ROLES, records),
         asked: Some(&Asked {
             links: vec![2, 2],
+            reach: vec![Reach::Open; 2],
             robots: 9,
         }),
         control_period_s: 0.1,
