@@ -1,8 +1,10 @@
 //! Why missions failed, in words: which target was missed, for how long, and what stood in the way.
 
 use super::number::{count, figure, seconds};
+use crate::geometry::Vec2;
 use crate::metrics::Summary;
 use crate::metrics::summary::{MissedSummary, MissedTarget};
+use crate::motion::{Reach, reach};
 use crate::scenario::{ProtocolConfig, Scenario};
 
 /// What a mission asks for.
@@ -10,6 +12,8 @@ use crate::scenario::{ProtocolConfig, Scenario};
 pub struct Asked {
     /// Links that each target needs, in order.
     pub links: Vec<u8>,
+    /// Whether a robot can come to each target, in order.
+    pub reach: Vec<Reach>,
     /// The fewest robots that it takes.
     pub robots: usize,
 }
@@ -19,10 +23,15 @@ impl Asked {
     #[must_use]
     pub fn of(scenario: &Scenario) -> Option<Self> {
         match &scenario.protocol {
-            ProtocolConfig::Backbone(backbone) => Some(Self {
-                links: backbone.targets().into_iter().map(|(_, links)| links).collect(),
-                robots: backbone.robots_needed(),
-            }),
+            ProtocolConfig::Backbone(backbone) => {
+                let (places, links): (Vec<Vec2>, Vec<u8>) = backbone.targets().into_iter().unzip();
+                let (body, near) = (scenario.motion.body_radius.get(), backbone.movement_threshold.get());
+                Some(Self {
+                    links,
+                    reach: reach(&scenario.arena, body, Vec2::zeros(), &places, near),
+                    robots: backbone.robots_needed(),
+                })
+            }
             ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => None,
         }
     }
@@ -41,8 +50,7 @@ pub fn sentences(summary: &Summary, asked: Option<&Asked>) -> Vec<String> {
     if missed.robots_alive < asked.robots as f64 {
         said.push(format!(
             "too few robots: {} alive at the end, and the mission takes {}",
-            figure(missed.robots_alive),
-            asked.robots
+            missed.robots_alive, asked.robots
         ));
     }
     said
@@ -69,7 +77,13 @@ fn of_target(target: &MissedTarget, missed: &MissedSummary, asked: &Asked) -> St
             (true, trials) => format!("{words} ({} trials)", count(trials)),
         }
     });
-    format!("target {number}: {how_long}: {}", causes.collect::<Vec<_>>().join("; "))
+    let causes = causes.collect::<Vec<_>>().join("; ");
+    let bar = match asked.reach.get(number as usize) {
+        Some(Reach::WalledIn) => "; it is walled in",
+        Some(Reach::NoRoom) => "; there is no room for a robot near enough to it",
+        Some(Reach::Open) | None => "",
+    };
+    format!("target {number}: {how_long}: {causes}{bar}")
 }
 
 fn cause(why: &str, target: &MissedTarget, wanted: u8) -> String {
@@ -82,7 +96,7 @@ fn cause(why: &str, target: &MissedTarget, wanted: u8) -> String {
         "held_up" => format!("its worker was held up {end} away, {best} at best"),
         "on_its_way" => format!("its worker was still on its way, {end} away at the end"),
         "links_short" => match target.links {
-            Some(links) if links < f64::from(wanted) => format!("links short, needed {wanted}, had {}", figure(links)),
+            Some(links) if links < f64::from(wanted) => format!("links short, needed {wanted}, had {links}"),
             _ => format!("links too long for its {wanted} to count"),
         },
         _ => "held at the end, and not for long enough".to_owned(),

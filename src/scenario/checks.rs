@@ -176,6 +176,12 @@ fn periods(scenario: &Scenario) -> Vec<Problem> {
         let help = format!("expected at most {} s", limits::SECONDS);
         found.push(Problem::new("time_limit", message, help));
     }
+    let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
+    if width.max(height) > limits::METRES {
+        let message = format!("an arena of {width} m × {height} m is out of range");
+        let help = format!("expected at most {} m", limits::METRES);
+        found.push(Problem::new("arena.size", message, help));
+    }
     found
 }
 

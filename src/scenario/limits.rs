@@ -8,6 +8,8 @@ pub const TRIALS: u32 = 1_000_000;
 pub const NAME: usize = 64;
 /// Simulated seconds of a trial: thirty years.
 pub const SECONDS: f64 = 1e9;
+/// Width and height of an arena, metres: a million kilometres, which tables of 32-bit numbers hold many times.
+pub const METRES: f64 = 1e9;
 /// Shortest period of anything that repeats, seconds. Virtual time counts nanoseconds.
 pub const SHORTEST_PERIOD: f64 = 1e-6;
 /// Motion ticks, or control steps of a robot, in a trial.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use desim::metrics::{Estimate, Outcome, Summary, TrialRecord};
+use desim::motion::Reach;
 use desim::predict::{Holds, Prediction, Surprise};
 use desim::report::{Asked, Input, Speed, terminal};
 use desim::text::{Style, columns};
@@ -28,6 +29,7 @@ fn report_with(records: &[TrialRecord], surprises: &[Surprise], style: Style) ->
         summary: &Summary::of("loss20", &TOPICS, &ROLES, records),
         asked: Some(&Asked {
             links: vec![2, 2],
+            reach: vec![Reach::Open; 2],
             robots: 9,
         }),
         control_period_s: 0.1,

@@ -163,3 +163,153 @@ fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
     let last = values.len().checked_sub(1)?;
     Some(f64::midpoint(values[last / 2], values[last.div_ceil(2)]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::{ActorId, SimTime};
+    use crate::faults::Effect;
+    use crate::geometry::Pose;
+    use crate::metrics::record::{FaultEpisode, FaultKind, TargetSample};
+    use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Recorder, RunEnd};
+    use TargetState::{Away, Held, LinksShort, NoWorker};
+
+    type Stand = (TargetState, Option<f64>, u32);
+
+    /// A trial of five robots that failed after a sample every 10 s of how each target stood, with its links.
+    fn failed<const TARGETS: usize>(samples: &[[Stand; TARGETS]]) -> TrialRecord {
+        let layout = Layout {
+            robots: 5,
+            topics: 1,
+            roles: 1,
+            headers: HeaderBytes { frame: 2, message: 3 },
+            radio_range: 2.0,
+            control_period: Span::from_secs(0.1),
+            mission: None,
+            rumors: 0,
+            status_memory: Span::from_secs(8.0),
+            trace: None,
+        };
+        let at = |place: usize| SimTime::from_secs(10.0 * place as f64);
+        let record = Recorder::new(layout, &MetricsConfig::default()).finish(RunEnd {
+            trial: 0,
+            seed: 1,
+            steps: 1,
+            simulated: at(samples.len()),
+            events: 1,
+            digest: 0,
+            poses: vec![Pose::default(); 5],
+        });
+        let sample = |(place, stands): (usize, &[Stand; TARGETS])| ConnectivitySample {
+            at: at(place),
+            lambda2: 1.0,
+            components: 1,
+            roles: vec![5],
+            links: stands.iter().map(|stand| stand.2).collect(),
+            targets: stands
+                .iter()
+                .map(|&(state, worker_m, _)| TargetSample { state, worker_m })
+                .collect(),
+        };
+        TrialRecord {
+            outcome: Outcome::Censored,
+            connectivity: samples.iter().enumerate().map(sample).collect(),
+            ..record
+        }
+    }
+
+    /// The only target that `records` missed, with the one thing that stood in its way.
+    fn only(records: &[TrialRecord]) -> (MissedTarget, String) {
+        let summary = MissedSummary::of(records).expect("they failed");
+        let [target] = &summary.targets[..] else {
+            panic!("one target was missed: {summary:?}");
+        };
+        let why: Vec<_> = target.why.0.iter().filter(|(_, trials)| *trials > 0).collect();
+        assert_eq!(why.len(), 1, "{why:?}");
+        (target.clone(), why[0].0.clone())
+    }
+
+    const HELD: Stand = (Held, Some(0.1), 2);
+    const NOBODY: Stand = (NoWorker, None, 0);
+
+    fn way(metres: f64) -> Stand {
+        (Away, Some(metres), 1)
+    }
+
+    #[test]
+    fn a_target_that_was_never_held_is_to_blame_and_not_one_that_was_let_go() {
+        let trial = failed(&[[NOBODY, way(2.0)], [NOBODY, HELD], [NOBODY, way(1.0)]]);
+        let (target, why) = only(&[trial]);
+        assert_eq!((target.target, why.as_str()), (0, "no_worker"));
+        assert_eq!((target.missed_s, target.nearest_m, target.at_end_m), (30.0, None, None));
+    }
+
+    #[test]
+    fn where_all_were_held_at_some_time_the_one_that_is_loose_at_the_end_is_to_blame_for_what_then_stood_in_its_way() {
+        let short = (LinksShort, Some(0.2), 1);
+        let trial = failed(&[
+            [way(3.0), HELD],
+            [HELD, HELD],
+            [short, HELD],
+            [short, HELD],
+            [way(0.5), HELD],
+        ]);
+        let (target, why) = only(&[trial]);
+        assert_eq!(
+            (target.target, why.as_str(), target.links),
+            (0, "links_short", Some(1.0))
+        );
+        assert_eq!(
+            (target.missed_s, target.nearest_m, target.at_end_m),
+            (40.0, Some(0.1), Some(0.5))
+        );
+    }
+
+    #[test]
+    fn where_all_are_held_at_the_end_the_last_one_came_too_late() {
+        let (target, why) = only(&[failed(&[[way(3.0), HELD], [way(1.0), HELD], [HELD, HELD]])]);
+        assert_eq!((target.target, why.as_str(), target.missed_s), (0, "too_late", 20.0));
+    }
+
+    #[test]
+    fn a_worker_that_came_nearer_was_on_its_way_and_one_that_did_not_was_held_up() {
+        assert_eq!(only(&[failed(&[[way(3.0)], [way(2.0)], [way(1.0)]])]).1, "on_its_way");
+        assert_eq!(only(&[failed(&[[way(3.0)], [way(1.01)], [way(1.0)]])]).1, "held_up");
+    }
+
+    #[test]
+    fn trials_are_put_together_by_medians_and_counts_and_those_that_completed_do_not_count() {
+        let trials = [
+            failed(&[[NOBODY], [way(1.0)], [way(1.0)]]),
+            failed(&[[NOBODY], [NOBODY]]),
+            TrialRecord {
+                outcome: Outcome::Completed { step: 1 },
+                ..failed(&[[HELD]])
+            },
+        ];
+        let silence = |robot: u32, until| FaultEpisode {
+            fault: 0,
+            kind: FaultKind::Robot {
+                robot: ActorId(robot),
+                effect: Effect::Silence,
+                role: 0,
+                target: None,
+            },
+            from: SimTime::ZERO,
+            until,
+        };
+        let mut trials = trials;
+        trials[0].faults = vec![
+            silence(1, None),
+            silence(2, Some(SimTime::from_secs(9.0))),
+            silence(3, None),
+        ];
+        let summary = MissedSummary::of(&trials).unwrap();
+        assert_eq!((summary.failed, summary.lasted_s, summary.robots_alive), (2, 25.0, 4.0));
+        let target = &summary.targets[0];
+        assert_eq!((target.trials, target.missed_s, target.nearest_m), (2, 25.0, Some(1.0)));
+        let whys: Vec<u64> = target.why.0.iter().map(|(_, trials)| *trials).collect();
+        assert_eq!(whys, [1, 1, 0, 0, 0]);
+        assert_eq!(MissedSummary::of(&trials[2..]), None);
+    }
+}

@@ -260,7 +260,10 @@ impl BackboneConfig {
     #[must_use]
     pub fn target_field(&self, index: usize) -> (String, &'static str) {
         match self.targets {
-            TargetsConfig::Ring { .. } => ("targets".to_owned(), "make the ring's radius less, or the arena larger"),
+            TargetsConfig::Ring { .. } => (
+                "targets".to_owned(),
+                "make the ring's radius less or the arena larger, or move what stands in the way",
+            ),
             TargetsConfig::At(_) => (format!("targets[{index}].at"), "move it, or what stands in its way"),
         }
     }
