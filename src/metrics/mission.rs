@@ -1,7 +1,7 @@
 //! When a mission is complete: every target held by a worker with its links, for long enough.
 
 use crate::engine::{ActorId, Span};
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 use crate::protocol::Role;
 
 use super::connectivity::Chains;
@@ -79,7 +79,7 @@ impl<'a> Scene<'a> {
 
     fn chains(&self, root: ActorId) -> Chains {
         Chains::new(&self.reports.parents, root, |child, parent| {
-            self.are_live(child, parent) && self.apart(child, parent) <= self.radio_range
+            self.are_live(child, parent) && self.apart(child, parent) <= at_most(self.radio_range)
         })
     }
 }
@@ -136,7 +136,7 @@ impl Mission {
         scene
             .reports
             .working_for(target, self.worker_role)
-            .filter(|robot| (scene.positions[robot.index()] - position).norm() <= self.reach)
+            .filter(|robot| (scene.positions[robot.index()] - position).norm() <= at_most(self.reach))
             .filter(|&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
             .collect()
     }
@@ -149,7 +149,9 @@ impl Mission {
             .enumerate()
             .filter(|(i, parent)| !named[..*i].contains(parent));
         distinct
-            .filter(|&(_, &parent)| scene.are_live(robot, parent) && scene.apart(robot, parent) <= self.link_limit)
+            .filter(|&(_, &parent)| {
+                scene.are_live(robot, parent) && scene.apart(robot, parent) <= at_most(self.link_limit)
+            })
             .count()
     }
 }
