@@ -2,7 +2,8 @@
 """Opens pages in a headless Chromium without a network, at desktop and phone width and on paper, and checks them.
 
 open_pages.py PICTURES PAGE...: pictures go to the folder PICTURES. Exit status 1 if a page has an error, asks for
-anything from outside, does not draw a chart, or scrolls sideways.
+anything from outside, does not draw a chart, draws fewer settings, levels or points than the table of its figure has rows, has labels
+that overlap, or scrolls sideways.
 """
 
 import pathlib
@@ -31,6 +32,34 @@ CHARTS = """() => [...document.querySelectorAll('.plotly-graph-div')].map(div =>
     marks: div.querySelectorAll('.plot path, .plot .point').length,
     width: div.getBoundingClientRect().width,
 }))"""
+# Of each chart of a figure: how many things its table says that there are, how many are drawn inside its axes, and which labels overlap.
+DRAWN = """() => [...document.querySelectorAll('figure')].flatMap(figure => {
+    const head = [...figure.querySelectorAll('thead th')].map(cell => cell.textContent);
+    const rows = [...figure.querySelectorAll('tbody tr')].map(row => [...row.children].map(cell => cell.textContent));
+    const inside = (box, area) => box.left > area.left - 2 && box.right < area.right + 2 && box.top > area.top - 2 && box.bottom < area.bottom + 2;
+    const shown = mark => { const box = mark.getBoundingClientRect(); return box.width > 0 && box.height > 0; };
+    return [...figure.querySelectorAll('.plotly-graph-div')].map(div => {
+        const area = div.querySelector('.nsewdrag').getBoundingClientRect();
+        const count = selector => [...div.querySelectorAll(selector)]
+            .filter(mark => shown(mark) && inside(mark.getBoundingClientRect(), area)).length;
+        const labels = [...div.querySelectorAll('.xtick text, .ytick text, .textpoint text, .legendtext')].filter(shown);
+        const boxes = labels.map(label => [label.textContent, label.getBoundingClientRect()]);
+        const overlaps = boxes.flatMap(([name, a], place) => boxes.slice(place + 1)
+            .filter(([_, b]) => a.left < b.right - 1.5 && b.left < a.right - 1.5 && a.top < b.bottom - 1.5 && b.top < a.bottom - 1.5)
+            .map(([other]) => name + ' | ' + other));
+        const outside = boxes.filter(([_, box]) => box.left < -1 || box.right > document.documentElement.clientWidth + 1).map(([name]) => name);
+        return {
+            id: div.id, head, rows, overlaps, outside,
+            height: div.getBoundingClientRect().height,
+            points: count('.scatterlayer .point'), texts: count('.scatterlayer .textpoint text'),
+            lines: [...div.querySelectorAll('.scatterlayer .js-line')].filter(line => parseFloat(getComputedStyle(line).strokeWidth) > 0).length,
+            ticks: [div.querySelectorAll('.xtick text').length, div.querySelectorAll('.ytick text').length],
+            cells: div.data.filter(trace => trace.type === 'heatmap').map(trace => [trace.z.length, trace.z[0].length])[0] || [0, 0],
+            first: div.data.length ? div.data[0].type : '',
+        };
+    });
+})"""
+SETTINGS = "() => document.querySelectorAll('#found table tbody tr').length"
 OVERFLOW = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
 
@@ -47,6 +76,48 @@ def faults(page: Page) -> list[str]:
     overflow = page.evaluate(OVERFLOW)
     if overflow > 0:
         found.append(f"the page is {overflow} px wider than its window")
+    return found
+
+
+def counted(page: Page) -> list[str]:
+    """What is wrong with what charts draw, held against the rows of their tables, and with their labels."""
+    found = []
+    settings = page.evaluate(SETTINGS)
+    for chart in page.evaluate(DRAWN):
+        name, rows = chart["id"], chart["rows"]
+        found += [f"{name}: labels overlap: {pair}" for pair in chart["overlaps"][:3]]
+        found += [f"{name}: a label leaves the page: {label}" for label in chart["outside"][:3]]
+        if chart["height"] > 1500:
+            found.append(f"{name}: {chart['height']} px high")
+        first = {tuple(row[:1]) for row in rows}
+        if name.startswith("by-setting-"):
+            # A setting without a value has its row all the same, and no mark.
+            valued = sum(row[2] != "–" for row in rows)
+            expected = {"points": valued, "ticks": settings, "rows": settings}
+        elif name.startswith("pareto-"):
+            expected = {"points": len(rows)}
+        elif name.startswith("completion-by-setting-"):
+            expected = {"lines": len(first)}
+        elif name.startswith("effects-"):
+            expected = {"points": len(rows), "ticks": len(rows)}
+        elif name.startswith("levels-") and chart["first"] == "scatter":
+            expected = {"points": len(rows), "lines": len({row[1] for row in rows})}
+        elif name.startswith("levels-"):
+            expected = {"cells": len(rows)}
+        elif name.startswith("differences-") and chart["first"] == "heatmap":
+            expected = {"cells": settings**2, "ticks": settings}
+        elif name.startswith("differences-"):
+            expected = {"points": len(rows), "ticks": len(rows)}
+        else:
+            continue
+        drawn = {
+            "points": chart["points"],
+            "lines": chart["lines"],
+            "ticks": chart["ticks"][1],
+            "cells": chart["cells"][0] * chart["cells"][1],
+            "rows": len(rows),
+        }
+        found += [f"{name}: {drawn[what]} {what} and not {count}" for what, count in expected.items() if drawn[what] != count]
     return found
 
 
@@ -77,6 +148,7 @@ def open_page(context: BrowserContext, path: pathlib.Path, pictures: pathlib.Pat
     page.goto(own)
     page.wait_for_timeout(500)
     found += faults(page)
+    found += counted(page)
     name = f"{path.parent.name}-{device}"
     page.screenshot(path=pictures / f"{name}.png", full_page=True)
     if device == "desktop":

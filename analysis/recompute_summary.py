@@ -10,6 +10,7 @@ order of the rows. Ends of intervals come from SciPy's distributions here and mu
 import json
 import math
 import pathlib
+import statistics
 import sys
 
 import polars as pl
@@ -19,6 +20,7 @@ from scipy.stats import binom, t as student
 from paper.statistics import Z, estimate, wilson
 
 INTERVAL_TOLERANCE = 1e-9
+WHY = ("no_worker", "held_up", "on_its_way", "links_short", "too_late")
 
 
 def total(values):
@@ -218,6 +220,35 @@ class Folder:
         times = {"completed": lambda done, _: (done, True), "censored": lambda _, steps: (steps, False)}
         return [times[outcome](done, steps) for outcome, done, steps in rows if outcome != "no_mission"]
 
+    def missed(self):
+        """Why missions failed, if any did: the targets that were missed, and what stood in the way."""
+        targets = range(sum(column.startswith("target_") for column in self.connectivity.columns))
+        failed = [row for row in self.trials.iter_rows(named=True) if row["outcome"] == "censored"]
+        samples = {row["trial"]: self.connectivity.filter(trial=row["trial"]).rows(named=True) for row in failed}
+        failed = [row for row in failed if samples[row["trial"]] and len(targets)]
+        if not failed:
+            return {}
+        ailing = self.faults.filter(pl.col("robot").is_not_null() & pl.col("until_s").is_null())
+        alive = [row["robots"] - ailing.filter(trial=row["trial"])["robot"].n_unique() for row in failed]
+        misses = {}
+        for row in failed:
+            rows, end = samples[row["trial"]], row["simulated_s"]
+            held = {k: [sample[f"target_{k}"] == "held" for sample in rows] for k in targets}
+            kept = {k: ([False] + held[k])[::-1].index(False) for k in targets}
+            never = [k for k in targets if not any(held[k])]
+            loose = never or [k for k in targets if not held[k][-1]] or [min(targets, key=lambda k: kept[k])]
+            for k in loose:
+                misses.setdefault(k, []).append(miss(rows, end, k))
+        found = []
+        for k, of_target in sorted(misses.items()):
+            middle = lambda key: statistics.median([v[key] for v in of_target if v[key] is not None] or [math.nan])
+            maybe = lambda key: None if math.isnan(middle(key)) else middle(key)
+            why = {name: sum(v["why"] == name for v in of_target) for name in WHY}
+            found.append({"target": k, "trials": len(of_target), "missed_s": middle("missed_s"), "why": why,
+                          **{key: maybe(key) for key in ("links", "nearest_m", "at_end_m")}})  # fmt: skip
+        lasted = statistics.median(row["simulated_s"] for row in failed)
+        return {"missed": {"failed": len(failed), "lasted_s": lasted, "robots_alive": statistics.median(alive), "targets": found}}
+
     def failures(self):
         """What failed, if anything did."""
         if self.faults.is_empty():
@@ -357,6 +388,7 @@ class Folder:
             "lambda2_min": {**median(least), "min": min((v for v in least if v is not None), default=None)},
             "connected_share": share(list(self.samples(lambda rows: (rows["components"] == 1).sum() / live if (live := (rows["components"] > 0).sum()) else None))),
             "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]]),
+            **self.missed(),
             **self.failures(),
             **self.mending(),
             **self.spreading(),
@@ -365,6 +397,29 @@ class Folder:
             "steps": {"value": self.trials["steps"].sum()},
             "simulated_s": {"value": total(self.trials["simulated_s"])},
         }
+
+
+def miss(rows, end, k):
+    """A target that a failed trial missed: `rows` are the trial's samples."""
+    state, metres = [row[f"target_{k}"] for row in rows], [row[f"worker_m_{k}"] for row in rows]
+    nanos = [round(1e9 * seconds) for seconds in [*(row["time_s"] for row in rows), end]]
+    last = max((i for i, name in enumerate(state) if name == "held"), default=-1)
+    loose = state[last + 1 :]
+    # Of causes that are as frequent the one that is nearest to success.
+    cause = max(("links_short", "away", "no_worker"), key=loose.count) if loose else "too_late"
+    if cause == "away":
+        back = len(loose) - 1 - max(len(rows) // 10, 1)
+        before = metres[last + 1 + back] if back >= 0 else None
+        nearer = before is not None and metres[-1] is not None and metres[-1] < 0.95 * before
+        cause = "on_its_way" if nearer else "held_up"
+    links = [row[f"links_{k}"] for row in rows[last + 1 :] if row[f"target_{k}"] == "links_short"]
+    return {
+        "missed_s": sum(b - a for a, b, name in zip(nanos, nanos[1:], state) if name != "held") / 1e9,
+        "why": cause,
+        "links": max(links, default=None),
+        "nearest_m": min((m for m in metres if m is not None), default=None),
+        "at_end_m": metres[-1],
+    }
 
 
 def leaves(value, path=""):

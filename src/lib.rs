@@ -65,7 +65,7 @@
 //!
 //! # The floors
 //!
-//! [`engine`], [`geometry`] and [`quantity`] know no robots; [`radio`], [`motion`], [`protocol`] and [`faults`] are pure models that do
+//! [`engine`], [`geometry`], [`quantity`] and [`text`] know no robots; [`radio`], [`motion`], [`protocol`] and [`faults`] are pure models that do
 //! not know each other; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
 //! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
 
@@ -84,3 +84,4 @@ pub mod radio;
 pub mod report;
 pub mod scenario;
 pub mod simulation;
+pub mod text;

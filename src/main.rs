@@ -2,8 +2,7 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use desim::cli::{self, Cli, log};
+use desim::cli::{self, log};
 use mimalloc::MiMalloc;
 
 /// Of a swarm of tens of thousands the memory lies in huge pages, which takes a sixth off a delivery.
@@ -11,7 +10,11 @@ use mimalloc::MiMalloc;
 static ALLOCATOR: MiMalloc = MiMalloc;
 
 fn main() -> ExitCode {
-    let arguments = Cli::parse();
-    log::to_stderr();
-    cli::exit(cli::run(arguments.command))
+    match cli::arguments(std::env::args_os()) {
+        Ok(arguments) => {
+            log::to_stderr();
+            cli::exit(cli::run(arguments.command))
+        }
+        Err(status) => status,
+    }
 }

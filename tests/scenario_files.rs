@@ -7,7 +7,9 @@ use desim::cli::check::{Say, check};
 use desim::protocol::CompletionConfig;
 use desim::protocol::backbone::TargetsConfig;
 use desim::radio::{LatencyConfig, LossConfig};
-use desim::scenario::{Override, ProtocolConfig, Report, Scenario, json_schema, load, parse, question, to_ron};
+use desim::scenario::{
+    Override, ProtocolConfig, Report, Scenario, Style, examine, json_schema, load, parse, question, to_ron,
+};
 
 mod shipped;
 
@@ -205,9 +207,93 @@ fn a_scenario_beyond_the_means_of_a_machine_is_refused() {
         &["time_limit=1e6", "swarm.robots=100000"],
         &["radio.range=1e9", "swarm.robots=1000000", "swarm.deploy=Uniform"],
         &["gossip.status.interval=1e-12"],
+        &["arena.size=(1e39, 5)"],
+        &["arena.size[1]=2e9"],
     ] {
         assert!(read(BASE, given).is_err(), "{given:?}");
     }
+}
+
+#[test]
+fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_is_large_is_warned_of() {
+    let heartbeat = "protocol=Heartbeat";
+    let lossy = [heartbeat, "detector=Timeout(0.15)", "radio.loss=Bernoulli(0.4)"];
+    for (given, field, what) in [
+        // 40 robots in a cluster, all in range: 1,560 pairs err (1 − p) p / η = 2.4 times a second each.
+        (vec!["time_limit=4000"], "time_limit", "for suspicions"),
+        (
+            vec!["time_limit=4e4", "metrics.sample_interval=0.001"],
+            "metrics.sample_interval",
+            "for samples",
+        ),
+        (vec!["trials=1000000"], "trials", "for the other trials"),
+        (
+            vec!["radio.latency=Constant(1000)", "time_limit=5000", "detector=Timeout(9)"],
+            "radio.latency",
+            "under way",
+        ),
+        (
+            vec!["swarm.robots=500000", "swarm.deploy=Uniform", "arena.size=(300, 300)"],
+            "swarm.robots",
+            "whom they hear",
+        ),
+    ] {
+        let all: Vec<&str> = lossy.iter().copied().chain(given.iter().copied()).collect();
+        let report = read(BASE, &all).expect_err(what);
+        let found = report
+            .diagnostics
+            .iter()
+            .find(|found| found.path.as_deref() == Some(field));
+        let found = found.unwrap_or_else(|| panic!("{given:?}: {report}"));
+        assert!(
+            found.message.contains("GB of memory") && found.message.contains(what),
+            "{report}"
+        );
+        assert!(found.help.is_some());
+    }
+    let warned = |given: &[&str]| {
+        let given: Vec<Override> = given.iter().map(|text| text.parse().unwrap()).collect();
+        let warnings = examine("base.ron", BASE, &given).unwrap().1;
+        warnings
+            .diagnostics
+            .into_iter()
+            .map(|found| found.message)
+            .collect::<Vec<_>>()
+    };
+    let large: Vec<&str> = lossy.iter().copied().chain(["time_limit=1500"]).collect();
+    assert!(
+        warned(&large).iter().any(|message| message.contains("GB of memory")),
+        "{:?}",
+        warned(&large)
+    );
+    let small: Vec<&str> = lossy.iter().copied().chain(["time_limit=400"]).collect();
+    assert_eq!(warned(&small), [] as [String; 0]);
+}
+
+#[test]
+fn more_events_than_weeks_hold_are_refused_and_those_of_days_are_warned_of() {
+    // 1,000 robots of which each tells 64 rumours to some hundred others, a million times a second.
+    let rumour = [
+        "protocol=Rumor(rounds: Poisson, sources: Random(64))",
+        "swarm.robots=1000",
+        "swarm.deploy=Uniform",
+    ];
+    let rounds =
+        |interval: &'static str| [&rumour[..], &[interval, "radio.latency=Constant(0)", "radio.range=3"]].concat();
+    let report = read(BASE, &rounds("gossip.relay.interval=1e-6")).expect_err("that takes months");
+    assert!(
+        report.to_string().contains("events, which would take weeks"),
+        "{report}"
+    );
+    let given: Vec<Override> = rounds("gossip.relay.interval=2e-4")
+        .iter()
+        .map(|text| text.parse().unwrap())
+        .collect();
+    let warnings = examine("base.ron", BASE, &given).unwrap().1;
+    assert!(
+        warnings.render(Style::PLAIN).contains("which may take days"),
+        "{warnings:?}"
+    );
 }
 
 #[test]

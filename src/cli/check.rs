@@ -1,12 +1,13 @@
 //! `desim check`: says everything that is wrong with scenario and study files before they are run.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use serde::Serialize;
 
 use super::failure::Failure;
+use super::output::{self, columns, style};
 use crate::export;
 use crate::predict::Preflight;
 use crate::report;
@@ -14,6 +15,7 @@ use crate::scenario::{
     Diagnostic, Override, Place, Report, Scenario, Style, Warnings, contents, examine, is_study, load_study, question,
     to_ron,
 };
+use crate::text::{clean, shown};
 
 /// What to say of a scenario that is well.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +85,7 @@ pub fn check(
     match say {
         Say::Well => {
             for checked in &accepted {
-                writeln!(out, "{}", checked.line)?;
+                write!(out, "{}", report::message(&checked.line, columns(&io::stdout())))?;
             }
         }
         Say::Resolved => {
@@ -92,10 +94,10 @@ pub fn check(
             }
         }
         Say::Expected => {
-            let colour = style(&io::stdout()).colour;
+            let style = style(&io::stdout());
             for (index, Examined { question, scenario, .. }) in scenarios().enumerate() {
                 let apart = if index > 0 { "\n" } else { "" };
-                let text = report::preflight(&Preflight::of(scenario), question.as_deref(), colour);
+                let text = report::preflight(&Preflight::of(scenario), question.as_deref(), style);
                 write!(out, "{apart}{text}")?;
             }
         }
@@ -114,8 +116,7 @@ fn write_apart(say: Say, out: &mut dyn Write, render: impl FnOnce(Style) -> Stri
     match say {
         Say::Well | Say::Expected => write!(out, "{}", render(style(&io::stdout()))),
         Say::Resolved | Say::ExpectedJson => {
-            let mut standard_error = io::stderr();
-            write!(standard_error, "{}", render(style(&standard_error)))
+            write!(output::stderr(), "{}", render(style(&io::stderr())))
         }
     }
 }
@@ -125,9 +126,8 @@ fn write_apart(say: Say, out: &mut dyn Write, render: impl FnOnce(Style) -> Stri
 /// # Errors
 /// If there is anything, and it is denied.
 pub fn heed(warnings: &Warnings, deny: Option<Deny>) -> Result<(), Failure> {
-    let mut standard_error = io::stderr();
     // Where nobody reads them, warnings are no reason to stop.
-    let _ = write!(standard_error, "{}", warnings.render(style(&standard_error)));
+    let _ = write!(output::stderr(), "{}", warnings.render(style(&io::stderr())));
     match deny {
         Some(Deny::Warnings) if !warnings.is_empty() => Err(Failure::Input(refusal(warnings.count()))),
         _ => Ok(()),
@@ -237,7 +237,7 @@ fn read(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
         counted(scenario.swarm.robots, "robot"),
     );
     Ok(Checked {
-        line: format!("ok {}: {}, {trials}, {robots}", file.display(), scenario.name),
+        line: format!("ok {}: {}, {trials}, {robots}", shown(file), scenario.name),
         scenarios: vec![Examined {
             question: question(&text),
             scenario,
@@ -253,7 +253,7 @@ fn read_study(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
             message: format!(
                 "{}{} is a study, whose fields are not set from outside",
                 given.prefix(),
-                file.display()
+                shown(file)
             ),
             help: Some("check it without --set".to_owned()),
             path: None,
@@ -274,7 +274,7 @@ fn read_study(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
     Ok(Checked {
         line: format!(
             "ok {}: {}, a study of {} settings, {} trials",
-            file.display(),
+            shown(file),
             plan.name,
             plan.settings.len(),
             trials.sum::<u64>()
@@ -286,15 +286,7 @@ fn read_study(file: &Path, overrides: &[Override]) -> Result<Checked, Report> {
 
 fn write_resolved(question: Option<&str>, scenario: &Scenario, out: &mut dyn Write) -> io::Result<()> {
     if let Some(question) = question {
-        writeln!(out, "// {question}")?;
+        writeln!(out, "// {}", clean(question))?;
     }
     write!(out, "{}", to_ron(scenario))
-}
-
-/// Colours where `stream` is a terminal, unless the user has switched them off.
-pub fn style(stream: &impl IsTerminal) -> Style {
-    Style {
-        colour: stream.is_terminal() && std::env::var_os("NO_COLOR").is_none(),
-        ..Style::PLAIN
-    }
 }

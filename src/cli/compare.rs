@@ -9,17 +9,20 @@ use serde_json::json;
 
 use super::check::{self, Deny};
 use super::failure::Failure;
+use super::output::say;
 use super::settings::Settings;
 use super::shown::{Format, print_comparison};
-use crate::export::{StudyFolder, StudyManifest};
+use crate::export::{FolderError, StudyFolder, StudyManifest};
 use crate::metrics::comparison::Comparison;
 use crate::scenario::{Plan, contents, is_study, load_study, plan_of_files};
+use crate::text::shown;
 
 /// What `desim compare --help` says.
 pub const LONG_ABOUT: &str = "\
 Runs every setting of a study file, or several scenario files, and compares them figure by figure: estimates with intervals, \
 differences with effect size and adjusted p-value, and in plain words which setting is better, by how much, and how sure that is; \
-or that no difference shows, and how many trials would show one.
+or that no difference shows, and how many trials would show one. Of several factors in all combinations it says what each does, averaged \
+over the others, and whether that depends on another.
 
 All settings of a study have the same seed, so that trials of one number share their random numbers and are compared in pairs. \
 Scenario files keep their own seeds and trials: where seeds are equal they are paired, else independent.
@@ -84,10 +87,10 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     let default_out = || PathBuf::from("results").join(&plan.name);
     let folder = StudyFolder::new(arguments.out.clone().unwrap_or_else(default_out));
     let names = plan.settings.iter().map(|setting| setting.name.clone()).collect();
-    let manifest = StudyManifest::new(described(&plan, arguments), names);
-    let comparison = match finished(&folder, &manifest, arguments)? {
+    let mut manifest = StudyManifest::new(described(&plan, arguments), names);
+    let comparison = match finished(&folder, &mut manifest, arguments)? {
         Some(comparison) => comparison,
-        None => Settings::open(&folder, &plan, arguments)?.compare(manifest)?,
+        None => Settings::open(&folder, &plan, arguments, &manifest)?.compare(manifest)?,
     };
     if arguments.quiet && arguments.format == Format::Text {
         return Ok(());
@@ -103,7 +106,7 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
             return Err(Failure::Input(format!(
                 "error: {0} is a scenario, and not a study: run it by `desim scenario {0}`\nGive a study file, `Study( ... )`, or two \
                  scenario files or more.",
-                file.display()
+                shown(file)
             )));
         }
         files => {
@@ -111,7 +114,7 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
                 if is_study(&contents(file)?) {
                     return Err(Failure::Input(format!(
                         "error: {0} is a study, and not a scenario: run it by `desim compare {0}`\nGive one study file alone, or scenario files.",
-                        file.display()
+                        shown(file)
                     )));
                 }
             }
@@ -148,14 +151,18 @@ fn described(plan: &Plan, arguments: &CompareArguments) -> serde_json::Value {
 }
 
 /// The comparison, if it is there and finished. The folder is then ready for the others: it holds nothing, or trials of the same
-/// study.
+/// study, whose files `asked` then names.
 fn finished(
     folder: &StudyFolder,
-    asked: &StudyManifest,
+    asked: &mut StudyManifest,
     arguments: &CompareArguments,
 ) -> Result<Option<Comparison>, Failure> {
-    let Some(there) = folder.contents()? else {
-        return Ok(None);
+    let there = match folder.contents() {
+        Ok(Some(there)) => there,
+        Ok(None) => return Ok(None),
+        // Whatever it was, it is to be replaced.
+        Err(FolderError::Altered { .. } | FolderError::Version { .. }) if arguments.force => asked.clone(),
+        Err(error) => return Err(error.into()),
     };
     if arguments.force {
         for name in &there.settings {
@@ -165,21 +172,25 @@ fn finished(
                 drop(crate::experiment::Parts::open(&trials)?);
             }
         }
-        folder.clear(&there)?;
+        folder.clear(&there.settings)?;
         return Ok(None);
     }
     let differences = there.differences(asked);
     if !differences.is_empty() {
         return Err(Failure::Input(format!(
             "error: {} holds results of another study:\n  {}\nChoose another folder with --out, or replace them with --force.",
-            folder.path().display(),
+            shown(folder.path()),
             differences.join("\n  "),
         )));
     }
     if there.finished {
-        arguments.remark(&format!("{} holds these results already", folder.path().display()));
-        return Ok(folder.comparison()?);
+        let comparison = folder.finished(&there)?;
+        folder.hold_page(&there)?;
+        folder.tidy(&there);
+        arguments.remark(&format!("{} holds these results already", shown(folder.path())));
+        return Ok(Some(comparison));
     }
+    asked.files = there.files;
     Ok(None)
 }
 
@@ -187,7 +198,7 @@ impl CompareArguments {
     /// Says something in passing.
     pub fn remark(&self, words: &str) {
         if !self.quiet {
-            eprintln!("{words}");
+            say(words);
         }
     }
 }

@@ -8,13 +8,15 @@ use tokio_util::sync::CancellationToken;
 
 use super::failure::Failure;
 use super::interrupt;
+use super::output;
 use super::shown::Format;
 use crate::engine::ActorId;
-use crate::export::{self, Contents, Folder, Manifest};
+use crate::export::{self, Contents, Folder, FolderError, Manifest};
 use crate::metrics::TrialRecord;
 use crate::report::Explanation;
 use crate::scenario::{Scenario, parse, to_ron};
 use crate::simulation::trace_trial;
+use crate::text::shown;
 
 /// What `desim explain --help` says.
 pub const LONG_ABOUT: &str = "\
@@ -75,11 +77,11 @@ pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
     let mut explanation = Explanation::of(&scenario.name, &record).expect("the robot was traced");
     explanation.rule = scenario.detector.words();
     let chosen = chosen(&explanation, arguments)?;
-    let mut out = io::stdout().lock();
+    let mut out = output::stdout();
     match (arguments.format, chosen) {
         (Format::Json, None) => out.write_all(&export::json(&explanation))?,
         (Format::Json, Some(number)) => out.write_all(&export::json(&explanation.suspicions[number - 1]))?,
-        (Format::Text, chosen) => out.write_all(explanation.text(chosen).as_bytes())?,
+        (Format::Text, chosen) => out.write_all(explanation.text(chosen, output::style(&io::stdout())).as_bytes())?,
     }
     Ok(out.flush()?)
 }
@@ -88,25 +90,31 @@ fn refuse<T>(message: impl Into<String>) -> Result<T, Failure> {
     Err(Failure::Input(format!("error: {}", message.into())))
 }
 
-/// The manifest of the finished results in `dir`.
+/// The manifest of the finished results in `dir`, all of which are as they were written.
 fn results(dir: &Path) -> Result<Manifest, Failure> {
-    let shown = dir.display();
+    let shown = shown(dir);
     if !dir.exists() {
         return refuse(format!("there is no folder {shown}"));
     }
-    match Folder::new(dir.to_owned()).contents() {
-        Ok(Contents::Results(manifest)) if manifest.finished => Ok(manifest),
+    let folder = Folder::new(dir.to_owned());
+    match folder.contents() {
+        Ok(Contents::Results(manifest)) if manifest.finished => {
+            folder.held(&manifest, &[])?;
+            Ok(manifest)
+        }
         Ok(Contents::Results(_)) => refuse(format!(
             "the results in {shown} are unfinished: run the same `desim scenario` command to its end first"
         )),
-        Err(error @ export::FolderError::Io { .. }) => Err(error.into()),
-        Ok(Contents::Nothing) | Err(_) => refuse(format!("{shown} holds no results of desim")),
+        Ok(Contents::Nothing) | Err(FolderError::Foreign { .. } | FolderError::NotAFolder(_)) => {
+            refuse(format!("{shown} holds no results of desim"))
+        }
+        Err(error) => Err(error.into()),
     }
 }
 
 /// The scenario that `manifest` holds.
 fn scenario(manifest: &Manifest, dir: &Path) -> Result<Scenario, Failure> {
-    let place = dir.join("manifest.json").display().to_string();
+    let place = shown(&dir.join("manifest.json"));
     let scenario: Scenario = serde_json::from_value(manifest.scenario.clone()).or_else(|error| {
         refuse(format!(
             "the scenario in {place} is of another version ({error}; desim {} there, {} now)",
@@ -125,7 +133,7 @@ fn recorded_digest(manifest: &Manifest, arguments: &ExplainArguments) -> Result<
         return refuse(format!(
             "there is no trial {}: {} has trials 0 to {}",
             arguments.trial,
-            arguments.dir.display(),
+            shown(&arguments.dir),
             manifest.trials.len().saturating_sub(1)
         ));
     };

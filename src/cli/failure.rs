@@ -2,10 +2,13 @@
 
 use std::io;
 
+use super::output::style;
 use crate::experiment::PartsError;
 use crate::export::{FolderError, ResultsError, WriteError};
 use crate::scenario::Report;
 
+/// Exit status where the input is wrong.
+pub const FAULTY_INPUT: u8 = 2;
 /// Exit status of an interrupted command.
 pub const INTERRUPTED: u8 = 130;
 
@@ -14,34 +17,24 @@ pub const INTERRUPTED: u8 = 130;
 pub enum Failure {
     /// The input is wrong; the message says how.
     Input(String),
+    /// The input is wrong; this shows where, laid out.
+    Drawn(String),
     /// The input is wrong, and the command has said how.
     Shown,
     /// Something else went wrong.
     Other(String),
     /// The user interrupted it; the message says what is kept.
     Interrupted(String),
-    /// Nobody reads the output any more, which is no fault.
-    PipeClosed,
 }
 
 impl Failure {
-    /// What to say on stderr, if there is anything left to say.
-    #[must_use]
-    pub fn message(&self) -> Option<&str> {
-        match self {
-            Self::Input(message) | Self::Other(message) | Self::Interrupted(message) => Some(message.trim_end()),
-            Self::Shown | Self::PipeClosed => None,
-        }
-    }
-
     /// The exit status.
     #[must_use]
     pub fn status(&self) -> u8 {
         match self {
-            Self::Input(_) | Self::Shown => 2,
+            Self::Input(_) | Self::Drawn(_) | Self::Shown => FAULTY_INPUT,
             Self::Other(_) => 1,
             Self::Interrupted(_) => INTERRUPTED,
-            Self::PipeClosed => 0,
         }
     }
 
@@ -52,29 +45,23 @@ impl Failure {
 }
 
 impl From<io::Error> for Failure {
-    /// Of writing to stdout.
+    /// Of writing what was asked for.
     fn from(error: io::Error) -> Self {
-        if error.kind() == io::ErrorKind::BrokenPipe {
-            Self::PipeClosed
-        } else {
-            Self::Other(format!("error: cannot write to standard output: {error}"))
-        }
+        Self::Other(format!("error: cannot write: {error}"))
     }
 }
 
 impl From<Report> for Failure {
     fn from(report: Report) -> Self {
-        Self::Input(report.render(super::check::style(&io::stderr())))
+        Self::Drawn(report.render(style(&io::stderr())))
     }
 }
 
 impl From<FolderError> for Failure {
     fn from(error: FolderError) -> Self {
         match error {
-            FolderError::NotAFolder(_) | FolderError::Foreign { .. } | FolderError::Unreadable { .. } => {
-                Self::Input(format!("error: {error}"))
-            }
             FolderError::Io { .. } => Self::other(&error),
+            wrong => Self::Input(format!("error: {wrong}")),
         }
     }
 }

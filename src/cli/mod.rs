@@ -6,6 +6,8 @@ pub mod explain;
 mod failure;
 mod interrupt;
 pub mod log;
+mod output;
+mod page_file;
 mod progress;
 pub mod report;
 pub mod scenario;
@@ -13,15 +15,17 @@ pub mod schema;
 mod settings;
 pub mod shown;
 
-use std::io;
+use std::ffi::OsString;
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use check::{Deny, Say};
 use compare::CompareArguments;
 use explain::ExplainArguments;
+use failure::FAULTY_INPUT;
 pub use failure::Failure;
 use report::ReportArguments;
 use scenario::ScenarioArguments;
@@ -52,6 +56,7 @@ Exit status:
   130  interrupted by Ctrl-C or SIGTERM; finished trials are kept
 
 Environment:
+  COLUMNS    width that text is laid out for, from 20 to 160 [default: the terminal's; 80 where there is none]
   DESIM_LOG  what to log on stderr, such as `info` or `desim=debug`; nothing if unset
   NO_COLOR   no colours on a terminal either";
 
@@ -103,12 +108,39 @@ pub enum Command {
     },
 }
 
+/// What the user asks for by `arguments`, the first of which is the command's own name. Help, and what is wrong with the
+/// arguments, is said at once.
+///
+/// # Errors
+/// The exit status, if nothing is left to do.
+pub fn arguments(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, ExitCode> {
+    let style = output::style(&io::stdout());
+    let command = Cli::command().term_width(style.width);
+    let matches = command.try_get_matches_from(arguments);
+    let error = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
+        Ok(cli) => return Ok(cli),
+        Err(error) => error,
+    };
+    let text = error.render();
+    if error.use_stderr() {
+        output::say(&text.to_string());
+        return Err(FAULTY_INPUT.into());
+    }
+    let text = if style.colour {
+        text.ansi().to_string()
+    } else {
+        text.to_string()
+    };
+    let _ = output::stdout().write_all(text.as_bytes());
+    Err(ExitCode::SUCCESS)
+}
+
 /// Runs a command.
 ///
 /// # Errors
 /// Whatever keeps it from being done.
 pub fn run(command: Command) -> Result<(), Failure> {
-    let mut out = io::stdout();
+    let mut out = output::stdout();
     match command {
         Command::Scenario(arguments) => scenario::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
@@ -139,8 +171,12 @@ pub fn run(command: Command) -> Result<(), Failure> {
 #[must_use]
 pub fn exit(result: Result<(), Failure>) -> ExitCode {
     let Err(failure) = result else { return ExitCode::SUCCESS };
-    if let Some(message) = failure.message() {
-        eprintln!("{message}");
+    match &failure {
+        Failure::Drawn(faults) => {
+            let _ = output::stderr().write_all(faults.as_bytes());
+        }
+        Failure::Input(words) | Failure::Other(words) | Failure::Interrupted(words) => output::say(words),
+        Failure::Shown => {}
     }
     failure.status().into()
 }

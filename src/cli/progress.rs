@@ -7,8 +7,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::experiment::FinishedTrial;
 
 /// Until a trial has finished, nobody knows how long they take.
-const AT_FIRST: &str = "{bar:24.green/dim} {pos}/{len} trials, {elapsed} gone";
-const LATER: &str = "{bar:24.green/dim} {pos}/{len} trials, {elapsed} gone, {eta} left, {msg} simulated s per s";
+const AT_FIRST: &str = "{wide_bar:.green/dim} {pos}/{len} trials, {elapsed} gone";
+const LATER: &str = "{wide_bar:.green/dim} {pos}/{len} trials, {elapsed} gone, {eta} left, {msg} simulated s per s";
 
 /// A bar on stderr, where that is a terminal; nothing elsewhere.
 pub struct Progress {

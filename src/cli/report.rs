@@ -1,16 +1,16 @@
 //! `desim report`: the report of finished results, on the terminal and as a page of charts.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::failure::Failure;
+use super::output::say;
+use super::page_file::{self, Place};
 use super::shown::{Finished, Format, print_comparison};
-use crate::experiment::Parts;
-use crate::export::{Folder, PAGE, Results, StudyFolder, keep_page};
-use crate::report::{PAGE_MARK, PageInput, page, study_page};
+use crate::export::{Folder, Manifest, PAGE, Results, StudyFolder, WriteError};
+use crate::report::{PageInput, page, study_page};
+use crate::text::shown;
 
 /// What `desim report --help` says.
 pub const LONG_ABOUT: &str = "\
@@ -30,7 +30,8 @@ pub struct ReportArguments {
     /// Folders of finished results
     #[arg(required = true, value_name = "DIR")]
     pub dirs: Vec<PathBuf>,
-    /// Where to write the page of charts [default: report.html in DIR; for several folders none is written]
+    /// Where to write the page of charts, /dev/stdout instead of the report [default: report.html in DIR; for several folders none is
+    /// written]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// What to print on standard output
@@ -47,13 +48,11 @@ pub fn run(arguments: &ReportArguments) -> Result<(), Failure> {
         return report_study(&study, arguments);
     }
     let results = Results::pooled(&arguments.dirs)?;
-    let files = write_page(&results, arguments)?;
+    let Some(files) = write_page(&results, arguments)? else {
+        return Ok(());
+    };
     let manifests = || results.sources.iter().map(|(_, manifest)| manifest);
-    let folders: Vec<_> = results
-        .sources
-        .iter()
-        .map(|(dir, _)| dir.display().to_string())
-        .collect();
+    let folders: Vec<_> = results.sources.iter().map(|(dir, _)| shown(dir)).collect();
     let trials: Vec<_> = manifests().flat_map(|manifest| manifest.trials.clone()).collect();
     let finished = Finished {
         question: question(&results),
@@ -74,7 +73,7 @@ fn study(dirs: &[PathBuf]) -> Result<Option<StudyFolder>, Failure> {
     if dirs.len() > 1 {
         return Err(Failure::Input(format!(
             "error: {} holds a study, which is reported alone: give its folder only, or the folders of settings",
-            dir.display()
+            shown(dir)
         )));
     }
     Ok(Some(StudyFolder::new(dir.clone())))
@@ -84,23 +83,40 @@ fn report_study(folder: &StudyFolder, arguments: &ReportArguments) -> Result<(),
     let unfinished = || {
         Failure::Input(format!(
             "error: the study in {} is not finished: go on with it by `desim compare`",
-            folder.path().display()
+            shown(folder.path())
         ))
     };
     let manifest = folder
         .contents()?
         .filter(|manifest| manifest.finished)
         .ok_or_else(unfinished)?;
-    let comparison = folder.comparison()?.ok_or_else(unfinished)?;
+    let comparison = folder.finished(&manifest)?;
     let html = study_page(&comparison, &manifest.made_by());
-    match &arguments.out {
-        Some(file) => write(file, &html)?,
-        None => {
-            folder.keep_page(&html)?;
-            eprintln!("{} has the charts", folder.path().join(PAGE).display());
-        }
+    let place = match &arguments.out {
+        Some(file) => page_file::write(file, &html)?,
+        None => kept(
+            folder.path(),
+            folder.keep_page(&manifest, &html).map_err(WriteError::from),
+        )?,
+    };
+    if place == Place::Output {
+        return Ok(());
     }
     print_comparison(&comparison, folder, arguments.format)
+}
+
+/// Says where the page is, or why it is not in `dir`: results may lie where nobody writes.
+fn kept<T>(dir: &Path, page: Result<T, WriteError>) -> Result<Place, Failure> {
+    match page {
+        Ok(_) => say(&format!("{} has the charts", shown(&dir.join(PAGE)))),
+        Err(error) if error.is_refused() => {
+            say(&format!(
+                "no page of charts here: {error}\nsay where it is to be: --out FILE"
+            ));
+        }
+        Err(error) => return Err(error.into()),
+    }
+    Ok(Place::File)
 }
 
 fn question(results: &Results) -> Option<String> {
@@ -110,8 +126,9 @@ fn question(results: &Results) -> Option<String> {
         .find_map(|(_, manifest)| manifest.question.clone())
 }
 
-/// Writes the page where it belongs and answers the names of the files in the folder, if it is one.
-fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Vec<String>, Failure> {
+/// Writes the page where it belongs and answers the names of the files in the folder, if it is one; nothing if the page has gone
+/// to standard output, where no report may follow it.
+fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Option<Vec<String>>, Failure> {
     let (dir, manifest) = &results.sources[0];
     let html = || {
         page(&PageInput {
@@ -124,56 +141,21 @@ fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Vec<Stri
             made_by: &manifest.made_by(),
         })
     };
-    let names = |files: &crate::export::Manifest| files.files.keys().cloned().collect();
+    let names = |manifest: &Manifest| manifest.files.keys().cloned().collect();
     match (&arguments.out, results.sources.len()) {
         (Some(file), many) => {
-            write(file, &html())?;
-            Ok(if many == 1 { names(manifest) } else { Vec::new() })
+            let files = if many == 1 { names(manifest) } else { Vec::new() };
+            Ok((page_file::write(file, &html())? == Place::File).then_some(files))
         }
         (None, 1) => {
-            let folder = Folder::new(dir.clone());
-            // Opening the trials makes sure that nobody else is at work here.
-            let parts = Parts::open(&folder.trials())?;
-            let manifest = keep_page(&folder, manifest, &html())?;
-            drop(parts);
-            eprintln!("{} has the charts", dir.join(PAGE).display());
-            Ok(names(&manifest))
+            let kept_page = Folder::new(dir.clone()).keep_page(manifest, &html());
+            let files = names(kept_page.as_ref().unwrap_or(manifest));
+            kept(dir, kept_page)?;
+            Ok(Some(files))
         }
         (None, _) => {
-            eprintln!("to have the charts of these results together, say where: --out FILE");
-            Ok(Vec::new())
+            say("to have the charts of these results together, say where: --out FILE");
+            Ok(Some(Vec::new()))
         }
     }
-}
-
-/// Writes a page to a place of the user's, over nothing but another page.
-fn write(file: &Path, html: &str) -> Result<(), Failure> {
-    match fs::read(file) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-        Ok(there) if String::from_utf8_lossy(&there[..there.len().min(1024)]).contains(PAGE_MARK) => {}
-        Ok(_) => {
-            let shown = file.display();
-            return Err(Failure::Input(format!(
-                "error: {shown} is no report of desim: choose another file with --out"
-            )));
-        }
-        Err(error) if error.kind() == io::ErrorKind::IsADirectory => {
-            let inside = file.join(PAGE);
-            return Err(Failure::Input(format!(
-                "error: {} is a folder: give a file, such as --out {}",
-                file.display(),
-                inside.display()
-            )));
-        }
-        Err(error) => {
-            return Err(Failure::Other(format!(
-                "error: cannot read {}: {error}",
-                file.display()
-            )));
-        }
-    }
-    fs::write(file, html)
-        .map_err(|error| Failure::Other(format!("error: cannot write {}: {error}", file.display())))?;
-    eprintln!("{} has the charts", file.display());
-    Ok(())
 }

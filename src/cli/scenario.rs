@@ -10,13 +10,15 @@ use tokio_util::sync::CancellationToken;
 use super::check::{self, Deny};
 use super::failure::Failure;
 use super::interrupt;
+use super::output::say;
 use super::progress::Progress;
 use super::shown::{Finished, Format};
 use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
-use crate::export::{self, Contents, Folder, Manifest, Pictures};
+use crate::export::{self, Contents, Folder, FolderError, Manifest, Pictures};
 use crate::metrics::Summary;
 use crate::scenario::{Scenario, contents, examine, is_study, question};
 use crate::simulation::{DriverKind, TrialError, run_trial};
+use crate::text::shown;
 
 /// What `desim scenario --help` says.
 pub const LONG_ABOUT: &str = "\
@@ -129,8 +131,10 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
     let folder = Folder::new(arguments.out.clone().unwrap_or_else(default_out));
     let (summary, manifest) = match finished(&folder, &scenario, arguments.force)? {
         Some(manifest) => {
-            arguments.remark(&format!("{} holds these results already", folder.path().display()));
-            (folder.summary()?, manifest)
+            let summary = folder.summary(&manifest)?;
+            folder.tidy();
+            arguments.remark(&format!("{} holds these results already", shown(folder.path())));
+            (summary, manifest)
         }
         None => simulate(&folder, &scenario, question(&text), arguments)?,
     };
@@ -156,7 +160,7 @@ impl ScenarioArguments {
     /// Says something in passing.
     fn remark(&self, words: &str) {
         if !self.quiet {
-            eprintln!("{words}");
+            say(words);
         }
     }
 }
@@ -164,24 +168,30 @@ impl ScenarioArguments {
 /// The manifest of the results asked for, if they are there and finished. The folder is then ready for the others: it
 /// holds nothing, or finished trials of the same experiment.
 fn finished(folder: &Folder, scenario: &Scenario, force: bool) -> Result<Option<Manifest>, Failure> {
-    let Contents::Results(there) = folder.contents()? else {
-        // Finished trials that nothing says the scenario of are of no use.
-        folder.drop_trials()?;
-        return Ok(None);
+    let there = match folder.contents() {
+        Ok(Contents::Results(there)) => Some(there),
+        Ok(Contents::Nothing) => {
+            // Finished trials that nothing says the scenario of are of no use.
+            folder.tidy();
+            return Ok(None);
+        }
+        // Whatever it was, it is to be replaced.
+        Err(FolderError::Altered { .. } | FolderError::Version { .. }) if force => None,
+        Err(error) => return Err(error.into()),
     };
-    if force {
+    let Some(there) = there.filter(|_| !force) else {
         // Opening the trials makes sure that nobody is running them.
         drop(Parts::open(&folder.trials())?);
-        folder.clear(&there)?;
+        folder.clear()?;
         return Ok(None);
-    }
+    };
     let differences = there.differences(&Manifest::new(scenario));
     if differences.is_empty() {
         return Ok(there.finished.then_some(there));
     }
     Err(Failure::Input(format!(
         "error: {} holds results of another experiment:\n  {}\nChoose another folder with --out, or replace them with --force.",
-        folder.path().display(),
+        shown(folder.path()),
         differences.join("\n  "),
     )))
 }
@@ -238,13 +248,13 @@ pub fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
 fn leave(folder: &Folder, experiment: &Experiment, scenario: &Scenario) -> Result<String, Failure> {
     let kept = experiment.kept();
     if kept == 0 {
-        folder.clear(&Manifest::new(scenario))?;
+        folder.clear()?;
         return Ok("interrupted before a trial had finished; nothing is kept".to_owned());
     }
     Ok(format!(
         "interrupted: {kept} of {} trials are kept in {}; run the same command to go on",
         scenario.trials,
-        folder.path().display()
+        shown(folder.path())
     ))
 }
 

@@ -12,10 +12,11 @@ use super::scenario::{failure, threads};
 use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
 use crate::export::{self, Contents, Folder, Manifest, Pictures, StudyFolder, StudyManifest};
 use crate::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials, widest};
-use crate::metrics::figures::{Figure, Registry, Sample};
+use crate::metrics::figures::{Figure, Registry, Sample, pool};
 use crate::report;
 use crate::scenario::{Plan, Scenario, Setting};
 use crate::simulation::{DriverKind, TrialError, run_trial};
+use crate::text::shown;
 
 /// The settings of a study, ready to run.
 pub struct Settings<'a> {
@@ -25,6 +26,8 @@ pub struct Settings<'a> {
     cells: Vec<Cell<'a>>,
     /// What the figures are that all settings have.
     figures: Vec<Figure>,
+    /// The comparison, if an attempt that was cut short has come that far.
+    compared: Option<Comparison>,
     stop: CancellationToken,
 }
 
@@ -44,14 +47,19 @@ struct Cell<'a> {
 
 impl<'a> Settings<'a> {
     /// Makes sure that each setting's folder holds nothing, or trials of that very setting. Writes nothing yet.
-    pub fn open(study: &'a StudyFolder, plan: &'a Plan, arguments: &'a CompareArguments) -> Result<Self, Failure> {
+    pub fn open(
+        study: &'a StudyFolder,
+        plan: &'a Plan,
+        arguments: &'a CompareArguments,
+        manifest: &StudyManifest,
+    ) -> Result<Self, Failure> {
         let registries: Vec<Registry> = plan
             .settings
             .iter()
             .map(|setting| Registry::of(setting.scenario.protocol.topics()))
             .collect();
         let figures = common(&registries);
-        let compared = study.comparison()?;
+        let compared = study.comparison(manifest)?;
         let mut cells = Vec::new();
         for (setting, registry) in plan.settings.iter().zip(registries) {
             let mut scenario = setting.scenario.clone();
@@ -68,7 +76,7 @@ impl<'a> Settings<'a> {
                 if !differences.is_empty() {
                     return Err(Failure::Input(format!(
                         "error: {} holds results that are not this study's:\n  {}\nChoose another folder with --out.",
-                        folder.path().display(),
+                        shown(folder.path()),
                         differences.join("\n  "),
                     )));
                 }
@@ -92,6 +100,7 @@ impl<'a> Settings<'a> {
             arguments,
             cells,
             figures,
+            compared,
             stop: CancellationToken::new(),
         })
     }
@@ -100,14 +109,15 @@ impl<'a> Settings<'a> {
     pub fn compare(mut self, mut manifest: StudyManifest) -> Result<Comparison, Failure> {
         interrupt::cancels(&self.stop).map_err(|error| Failure::other(&error))?;
         self.study.declare(&manifest)?;
-        self.claim()?;
-        let comparison = match self.study.comparison()? {
+        self.claim(&mut manifest)?;
+        let comparison = match self.compared.take() {
             Some(comparison) => comparison,
-            None => self.simulate(&manifest)?,
+            None => self.simulate(&mut manifest)?,
         };
         for cell in &mut self.cells {
             if let Some(parts) = cell.parts.take() {
-                export::write(&cell.folder, parts, &cell.scenario, Pictures::First)?;
+                let (_, results) = export::write(&cell.folder, parts, &cell.scenario, Pictures::First)?;
+                manifest.add(&cell.setting.name, &results);
             }
         }
         manifest.finished = true;
@@ -115,11 +125,15 @@ impl<'a> Settings<'a> {
         Ok(comparison)
     }
 
-    /// Opens the trials of every setting whose results have not been written yet.
-    fn claim(&mut self) -> Result<(), Failure> {
+    /// Opens the trials of every setting whose results have not been written yet; those of the others go into `manifest`.
+    fn claim(&mut self, manifest: &mut StudyManifest) -> Result<(), Failure> {
         for cell in &mut self.cells {
-            let there = cell.folder.contents()?;
-            if matches!(&there, Contents::Results(there) if there.finished) {
+            if let Contents::Results(there) = cell.folder.contents()?
+                && there.finished
+            {
+                cell.folder.held(&there, &[])?;
+                cell.folder.tidy();
+                manifest.add(&cell.setting.name, &there);
                 continue;
             }
             cell.parts = Some(Parts::open(&cell.folder.trials())?);
@@ -128,7 +142,7 @@ impl<'a> Settings<'a> {
         Ok(())
     }
 
-    fn simulate(&mut self, manifest: &StudyManifest) -> Result<Comparison, Failure> {
+    fn simulate(&mut self, manifest: &mut StudyManifest) -> Result<Comparison, Failure> {
         let batch: Vec<u32> = self.cells.iter().map(|cell| cell.scenario.trials).collect();
         let stopping = loop {
             self.batch(manifest)?;
@@ -150,7 +164,7 @@ impl<'a> Settings<'a> {
         let trials = self.trials();
         let mut comparison = Comparison::of(&self.design(), &trials, stopping);
         report::describe(&mut comparison);
-        self.study.write_comparison(&comparison, &trials)?;
+        self.study.write_comparison(&comparison, &trials, manifest)?;
         Ok(comparison)
     }
 
@@ -226,12 +240,12 @@ impl<'a> Settings<'a> {
             cell.parts = None;
         }
         if kept == 0 {
-            self.study.clear(manifest)?;
+            self.study.clear(&manifest.settings)?;
             return Ok("interrupted before a trial had finished; nothing is kept".to_owned());
         }
         Ok(format!(
             "interrupted: {kept} of {total} trials are kept in {}; run the same command to go on",
-            self.study.path().display()
+            shown(self.study.path())
         ))
     }
 
@@ -239,7 +253,7 @@ impl<'a> Settings<'a> {
     fn stopping(&self, width: f64) -> Stopping {
         let design = self.design();
         let figure = design.compared.first().copied().unwrap_or(0);
-        let widest = widest(&self.trials(), figure);
+        let widest = widest(&self.figures[figure], &self.trials(), figure);
         let trials = self.cells.iter().map(|cell| cell.scenario.trials).max().unwrap_or(0);
         Stopping {
             figure: self.figures[figure].key.clone(),
@@ -262,9 +276,10 @@ impl<'a> Settings<'a> {
                 .places
                 .iter()
                 .map(|&place| {
-                    (0..cell.scenario.trials)
-                        .filter_map(|trial| Some(cell.told.get(&trial)?[place]))
-                        .collect()
+                    let told = (0..cell.scenario.trials).filter_map(|trial| cell.told.get(&trial));
+                    let mut samples: Vec<Sample> = told.map(|told| told[place].clone()).collect();
+                    pool(&mut samples);
+                    samples
                 })
                 .collect(),
         };

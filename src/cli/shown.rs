@@ -1,11 +1,12 @@
 //! Finished results on standard output.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use clap::ValueEnum;
 
 use super::failure::Failure;
+use super::output;
 use crate::export::{self, StudyFolder, TrialEntry};
 use crate::metrics::Summary;
 use crate::metrics::comparison::Comparison;
@@ -47,7 +48,7 @@ impl Finished<'_> {
     /// # Errors
     /// If standard output cannot be written to.
     pub fn print(&self, format: Format) -> Result<(), Failure> {
-        let mut out = io::stdout().lock();
+        let mut out = output::stdout();
         match format {
             Format::Json => out.write_all(&export::json(self.summary))?,
             Format::Text => out.write_all(self.text().as_bytes())?,
@@ -60,6 +61,7 @@ impl Finished<'_> {
         report::terminal(&report::Input {
             question: self.question.as_deref(),
             summary: self.summary,
+            asked: report::Asked::of(self.scenario).as_ref(),
             control_period_s: self.scenario.control.period.get(),
             detects: self.scenario.detector != DetectorConfig::None,
             surprises: &predict::surprises(self.scenario, self.summary),
@@ -70,7 +72,7 @@ impl Finished<'_> {
             },
             folder: &self.folders,
             files: &self.files,
-            colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+            style: output::style(&io::stdout()),
         })
     }
 }
@@ -80,7 +82,7 @@ impl Finished<'_> {
 /// # Errors
 /// If standard output cannot be written to.
 pub fn print_comparison(comparison: &Comparison, folder: &StudyFolder, format: Format) -> Result<(), Failure> {
-    let mut out = io::stdout().lock();
+    let mut out = output::stdout();
     match format {
         Format::Json => out.write_all(&export::json(comparison))?,
         Format::Text => {
@@ -88,7 +90,7 @@ pub fn print_comparison(comparison: &Comparison, folder: &StudyFolder, format: F
                 comparison,
                 folder: folder.path(),
                 files: &folder.files(),
-                colour: io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+                style: output::style(&io::stdout()),
             });
             out.write_all(text.as_bytes())?;
         }

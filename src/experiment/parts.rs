@@ -1,12 +1,14 @@
 //! Finished trials on disk, until all of an experiment's are there.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_128;
 
 use crate::metrics::TrialRecord;
+use crate::text::shown;
 
 /// A trial and what it took.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,8 +21,8 @@ pub struct FinishedTrial {
 
 /// A folder with one file a finished trial.
 ///
-/// A file is JSON whose numbers read back bit for bit, written under another name and renamed: whatever kills the
-/// process, a file that is there is whole. The folder is locked while it is open, so that two processes never run
+/// A file is a line of JSON whose numbers read back bit for bit, and a line with the XXH3-128 hash of that, written under another
+/// name and renamed: whatever kills the process, a file that is there is whole, and one that has changed since is noticed. The folder is locked while it is open, so that two processes never run
 /// the same experiment.
 #[derive(Debug)]
 pub struct Parts {
@@ -32,10 +34,10 @@ pub struct Parts {
 #[derive(Debug, thiserror::Error)]
 pub enum PartsError {
     /// Another process has it.
-    #[error("another desim is running these trials in {}", .0.display())]
+    #[error("another desim is running these trials in {}", shown(.0))]
     Busy(PathBuf),
     /// The file system refused.
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error("cannot {action} {}: {source}", shown(path))]
     Io {
         /// What was attempted.
         action: &'static str,
@@ -45,7 +47,7 @@ pub enum PartsError {
         source: io::Error,
     },
     /// A file is not the trial that its name says.
-    #[error("{} is not a finished trial: {reason}", path.display())]
+    #[error("{} is not a finished trial: {reason}", shown(path))]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -111,12 +113,23 @@ impl Parts {
     /// If it is not there, or not what its name says.
     pub fn load(&self, trial: u32) -> Result<FinishedTrial, PartsError> {
         let path = self.path(trial);
-        let bytes = fs::read(&path).map_err(failed("read", &path))?;
         let damaged = |reason: String| PartsError::Damaged {
             path: path.clone(),
             reason,
         };
-        let part: FinishedTrial = serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
+        if path.exists() && !path.is_file() {
+            return Err(damaged("it is no file with an end".to_owned()));
+        }
+        let bytes = fs::read(&path).map_err(failed("read", &path))?;
+        let line = bytes
+            .iter()
+            .position(|byte| *byte == b'\n')
+            .map_or(bytes.len(), |end| end + 1);
+        let (json, hash) = bytes.split_at(line);
+        if hash != hash_line(json) {
+            return Err(damaged("it does not fit its hash".to_owned()));
+        }
+        let part: FinishedTrial = serde_json::from_slice(json).map_err(|error| damaged(error.to_string()))?;
         if part.record.trial == trial {
             Ok(part)
         } else {
@@ -130,9 +143,16 @@ impl Parts {
 }
 
 fn write_json(path: &Path, part: &FinishedTrial) -> io::Result<()> {
-    let mut writer = BufWriter::new(File::create(path)?);
-    serde_json::to_writer(&mut writer, part)?;
-    writer.flush()
+    let mut bytes = serde_json::to_vec(part)?;
+    bytes.push(b'\n');
+    let hash = hash_line(&bytes);
+    bytes.extend(hash);
+    File::create(path)?.write_all(&bytes)
+}
+
+/// The line that follows on `json`.
+fn hash_line(json: &[u8]) -> Vec<u8> {
+    format!("{:032x}\n", xxh3_128(json)).into_bytes()
 }
 
 fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> PartsError {

@@ -32,7 +32,7 @@ pub fn write(path: &Path, comparison: &Comparison, trials: &[Trials]) -> io::Res
                 levels: levels.clone(),
                 figure: key.clone(),
                 trial,
-                sample: *sample,
+                sample: sample.clone(),
             }))?;
         }
     }

@@ -1,18 +1,26 @@
-//! A results folder: what is in it, and how files get into it whole or not at all.
+//! A results folder: what is in it, how files get into it whole or not at all, and whether they are still those that were put there.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use xxhash_rust::xxh3::Xxh3;
-
-use super::manifest::{FileEntry, Manifest};
-use super::place::{FolderError, Place, failed, gone, json};
+use super::Tables;
+use super::held::{FileEntry, held, measure, sealed, unseal};
+use super::manifest::Manifest;
+use super::place::{FolderError, Place, failed, gone};
+use super::write::WriteError;
+use crate::experiment::Parts;
 use crate::metrics::Summary;
 
-const MANIFEST: &str = "manifest.json";
+/// What a folder is the result of.
+pub const MANIFEST: &str = "manifest.json";
 /// The summary's file.
 pub const SUMMARY: &str = "summary.json";
+/// The page of charts. It follows from the other files and may be missing.
+pub const PAGE: &str = "report.html";
+/// Pictures of a trial, before its number.
+pub const PICTURES: [&str; 2] = ["final", "trajectories"];
 const TRIALS: &str = ".trials";
 
 /// A folder that holds, or will hold, the results of one experiment.
@@ -50,39 +58,52 @@ impl Folder {
         self.path().join(TRIALS)
     }
 
-    /// What is in it. Reads only.
+    /// What is in it, by a manifest that is as it was written. Reads only.
     ///
     /// # Errors
     /// If it is no folder, or holds anything but results, or cannot be read.
     pub fn contents(&self) -> Result<Contents, FolderError> {
-        let entries = match fs::read_dir(self.path()) {
-            Ok(entries) => entries,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Contents::Nothing),
-            Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
-                return Err(FolderError::NotAFolder(self.path().to_owned()));
-            }
-            Err(error) => return Err(failed("read", self.path())(error)),
-        };
-        let mut names = Vec::new();
-        for entry in entries {
-            names.push(
-                entry
-                    .map_err(failed("read", self.path()))?
-                    .file_name()
-                    .to_string_lossy()
-                    .into_owned(),
-            );
-        }
+        let names = self.place.names()?;
         if names.iter().any(|name| name == MANIFEST) {
-            return self.place.read(MANIFEST).map(Contents::Results);
+            return unseal(self.path(), MANIFEST).map(Contents::Results);
         }
-        match names.iter().filter(|&name| name != TRIALS).min() {
+        match names.into_iter().find(|name| name != TRIALS) {
             None => Ok(Contents::Nothing),
-            Some(found) => Err(FolderError::Foreign {
-                dir: self.path().to_owned(),
-                found: found.clone(),
-            }),
+            Some(found) => Err(self.foreign(found)),
         }
+    }
+
+    fn foreign(&self, found: String) -> FolderError {
+        FolderError::Foreign {
+            dir: self.path().to_owned(),
+            found,
+        }
+    }
+
+    /// Holds every file of finished results against `manifest`, but for the page of charts, and answers the contents of those
+    /// that are `wanted`.
+    ///
+    /// # Errors
+    /// The file that is not the one that was written, or that is there though none of that name was.
+    pub fn held(&self, manifest: &Manifest, wanted: &[&str]) -> Result<BTreeMap<String, Vec<u8>>, FolderError> {
+        // Whoever reads the folder as a whole would take such a table for one of its own.
+        let is_stranger = |name: &String| name.ends_with(".parquet") && !manifest.files.contains_key(name);
+        if let Some(name) = self.place.names()?.into_iter().find(is_stranger) {
+            return Err(FolderError::Stranger(self.path().join(name)));
+        }
+        held(self.path(), &manifest.results(), wanted)
+    }
+
+    /// The summary of finished results, all of whose files are those that `manifest` describes; the page of charts, too.
+    ///
+    /// # Errors
+    /// As [`held`](Self::held).
+    pub fn summary(&self, manifest: &Manifest) -> Result<Summary, FolderError> {
+        let files = self.held(manifest, &[SUMMARY])?;
+        hold_page(self.path(), manifest.files.get(PAGE))?;
+        let summary = files.get(SUMMARY).map(Vec::as_slice).unwrap_or_default();
+        serde_json::from_slice(summary)
+            .map_err(|error| FolderError::version(&self.path().join(SUMMARY), &error, &manifest.version))
     }
 
     /// Puts a manifest in place. Like every file, it passes through [`trials`](Self::trials), which must be there.
@@ -90,27 +111,49 @@ impl Folder {
     /// # Errors
     /// If the file system refuses.
     pub fn declare(&self, manifest: &Manifest) -> Result<(), FolderError> {
-        self.stage(MANIFEST, &json(manifest))?;
+        self.stage(MANIFEST, &sealed(manifest))?;
         self.place(MANIFEST)
     }
 
-    /// Deletes what `manifest` says that desim put here, and the folders that were not there before.
+    /// Deletes what desim put here, and the folders that were not there before. Where the manifest cannot be trusted, all that
+    /// is here must have the name of a file of desim's.
+    ///
+    /// # Errors
+    /// If something else is here, or the file system refuses.
+    pub fn clear(&self) -> Result<(), FolderError> {
+        let names = self.place.names()?;
+        let named = match self.contents() {
+            Ok(Contents::Results(manifest)) => manifest.files,
+            Ok(Contents::Nothing) => BTreeMap::new(),
+            Err(FolderError::Altered { .. } | FolderError::Version { .. }) => {
+                match names.iter().find(|name| *name != TRIALS && !is_own(name)) {
+                    Some(found) => return Err(self.foreign(found.clone())),
+                    None => BTreeMap::new(),
+                }
+            }
+            Err(error) => return Err(error),
+        };
+        self.drop_trials()?;
+        let is_known = |name: &&String| (is_own(name) || named.contains_key(*name)) && *name != MANIFEST;
+        for name in names.iter().filter(is_known) {
+            self.place.delete(name)?;
+        }
+        self.place.delete(MANIFEST)?;
+        self.place.leave();
+        Ok(())
+    }
+
+    /// Deletes files of desim's that `manifest` does not name: an attempt that was cut short may have left them.
     ///
     /// # Errors
     /// If the file system refuses.
-    pub fn clear(&self, manifest: &Manifest) -> Result<(), FolderError> {
-        self.drop_trials()?;
-        // A name with a separator never came from desim: it must not reach out of the folder.
-        let named = manifest
-            .files
-            .keys()
-            .filter(|name| !name.contains(['/', '\\']))
-            .map(String::as_str);
-        for name in named.chain([MANIFEST]) {
-            self.place.delete(name)?;
-        }
-        self.place.leave();
-        Ok(())
+    pub fn sweep(&self, manifest: &Manifest) -> Result<(), FolderError> {
+        let names = self.place.names()?;
+        let is_left = |name: &&String| is_own(name) && *name != MANIFEST && !manifest.files.contains_key(*name);
+        names
+            .iter()
+            .filter(is_left)
+            .try_for_each(|name| self.place.delete(name))
     }
 
     /// Deletes the finished trials, which the tables hold by now.
@@ -119,6 +162,14 @@ impl Folder {
     /// If the file system refuses.
     pub fn drop_trials(&self) -> Result<(), FolderError> {
         gone(fs::remove_dir_all(self.trials())).map_err(failed("delete", &self.trials()))
+    }
+
+    /// Deletes what an attempt that was cut short has left beside finished results, unless somebody is at work there. Where it
+    /// cannot be deleted it does no harm.
+    pub fn tidy(&self) {
+        if self.trials().exists() && Parts::open(&self.trials()).is_ok() {
+            let _ = self.drop_trials();
+        }
     }
 
     /// Writes a file that is to be [`place`](Self::place)d.
@@ -149,28 +200,39 @@ impl Folder {
         fs::rename(self.trials().join(name), &path).map_err(failed("write", &path))
     }
 
-    /// The summary of finished results.
+    /// Puts the page of charts into a folder of finished results, and its name into the manifest.
     ///
     /// # Errors
-    /// If it cannot be read.
-    pub fn summary(&self) -> Result<Summary, FolderError> {
-        self.place.read(SUMMARY)
+    /// If somebody else is at work in the folder, or the file system refuses.
+    pub fn keep_page(&self, manifest: &Manifest, page: &str) -> Result<Manifest, WriteError> {
+        let parts = Parts::open(&self.trials())?;
+        self.stage(PAGE, page.as_bytes())?;
+        let mut manifest = manifest.clone();
+        manifest.files.insert(PAGE.to_owned(), FileEntry::of(page.as_bytes()));
+        self.place(PAGE)?;
+        self.declare(&manifest)?;
+        drop(parts);
+        self.drop_trials()?;
+        Ok(manifest)
     }
 }
 
-/// Length and hash of a file, however large.
-pub fn measure(path: &Path) -> io::Result<FileEntry> {
-    let mut file = File::open(path)?;
-    let (mut hash, mut bytes, mut chunk) = (Xxh3::new(), 0, vec![0; 1 << 16]);
-    loop {
-        let read = file.read(&mut chunk)?;
-        if read == 0 {
-            return Ok(FileEntry {
-                bytes,
-                xxh3_128: format!("{:032x}", hash.digest128()),
-            });
-        }
-        hash.update(&chunk[..read]);
-        bytes += read as u64;
+/// Whether desim gives a file of results this name.
+fn is_own(name: &str) -> bool {
+    let is_picture = || {
+        let number = |kind: &str| name.strip_prefix(kind)?.strip_prefix('_')?.strip_suffix(".svg");
+        let is_number = |number: &str| !number.is_empty() && number.bytes().all(|digit| digit.is_ascii_digit());
+        PICTURES.iter().filter_map(|kind| number(kind)).any(is_number)
+    };
+    [MANIFEST, SUMMARY, PAGE].contains(&name) || Tables::FILES.iter().any(|table| *table == name) || is_picture()
+}
+
+/// Holds the page of charts in `dir`, if there is one, against what was written.
+pub fn hold_page(dir: &Path, written: Option<&FileEntry>) -> Result<(), FolderError> {
+    let files = written.map(|entry| (PAGE.to_owned(), entry.clone()));
+    match held(dir, &files.into_iter().collect(), &[]) {
+        Err(FolderError::Altered { path, .. }) if path.symlink_metadata().is_ok() => Err(FolderError::Page(path)),
+        Err(FolderError::Altered { .. }) | Ok(_) => Ok(()),
+        Err(error) => Err(error),
     }
 }

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::folder::PAGE;
+use super::held::FileEntry;
 use crate::scenario::Scenario;
 
 /// What `manifest.json` holds. The only file of a results folder that depends on the machine.
@@ -44,15 +46,6 @@ pub struct TrialEntry {
     pub wall_s: f64,
 }
 
-/// One file in the manifest.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FileEntry {
-    /// Its length.
-    pub bytes: u64,
-    /// Its XXH3 hash of 128 bits, 32 hexadecimal digits.
-    pub xxh3_128: String,
-}
-
 impl Manifest {
     /// The manifest of an experiment that has just begun.
     ///
@@ -70,6 +63,13 @@ impl Manifest {
             trials: Vec::new(),
             files: BTreeMap::new(),
         }
+    }
+
+    /// The other files but for the page of charts, which follows from them.
+    #[must_use]
+    pub fn results(&self) -> BTreeMap<String, FileEntry> {
+        let files = self.files.iter().filter(|(name, _)| *name != PAGE);
+        files.map(|(name, entry)| (name.clone(), entry.clone())).collect()
     }
 
     /// What keeps results of `self` from being results of `asked`, a line each: version and scenario, field by field.

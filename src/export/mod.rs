@@ -6,6 +6,7 @@
 #[cfg(feature = "parquet")]
 mod comparison_table;
 mod folder;
+mod held;
 mod manifest;
 mod names;
 mod picture;
@@ -20,13 +21,14 @@ mod table;
 mod tables;
 mod write;
 
-pub use folder::{Contents, Folder};
-pub use manifest::{Difference, FileEntry, Manifest, TrialEntry};
+pub use folder::{Contents, Folder, PAGE};
+pub use held::{FileEntry, sealed};
+pub use manifest::{Difference, Manifest, TrialEntry};
 pub use names::Names;
 pub use picture::Scene;
 pub use place::{FolderError, json};
 pub use read::NameLists;
-pub use results::{PAGE, Results, ResultsError, keep_page};
+pub use results::{Results, ResultsError};
 pub use study::{StudyFolder, StudyManifest};
 pub use tables::Tables;
 pub use write::{Pictures, WriteError, write};

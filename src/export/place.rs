@@ -1,35 +1,54 @@
-//! A folder of results, whatever they are of: what can go wrong with it, how its files are read, and how it is left as it was found.
+//! A folder of results, whatever they are of: what can go wrong with it, and how it is left as it was found.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::de::DeserializeOwned;
+use crate::text::{is_unsafe, shown};
 
-/// A folder cannot hold results.
+/// A folder cannot hold results, or those in it cannot be shown.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
     /// It is a file.
-    #[error("{} is not a folder: choose another with --out", .0.display())]
+    #[error("{} is not a folder: choose another with --out", shown(.0))]
     NotAFolder(PathBuf),
     /// Something else is in it.
-    #[error("{} holds files that are no results of desim ({found}): choose an empty folder with --out", dir.display())]
+    #[error(
+        "{} holds files that are no results of desim ({found}): choose an empty folder with --out",
+        shown(dir)
+    )]
     Foreign {
         /// The folder.
         dir: PathBuf,
         /// One of the files.
         found: String,
     },
-    /// Its manifest or its summary is not one.
-    #[error("{} is damaged, or of another version ({reason}): choose another folder with --out", path.display())]
-    Unreadable {
+    /// A file is not the one that desim wrote.
+    #[error("{} {wrong}: restore it, or make the results again with --force", shown(path))]
+    Altered {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// What is wrong with it.
+        wrong: String,
+    },
+    /// A file is none of desim's, but would be taken for a table of the results.
+    #[error("{} is no file of these results: move it out of the folder", shown(.0))]
+    Stranger(PathBuf),
+    /// The page of charts is not the one that desim wrote.
+    #[error("{} is another page than desim wrote: make it again with `desim report`, or delete it", shown(.0))]
+    Page(PathBuf),
+    /// A file is as it was written, by another version.
+    #[error("{} is of another version ({reason}; desim {there} there, {} now): report it with the version that made it, or make the results again with --force", shown(path), env!("CARGO_PKG_VERSION"))]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// What is unknown about it.
         reason: String,
+        /// The version that made it.
+        there: String,
     },
     /// The file system refused.
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error("cannot {action} {}: {source}", shown(path))]
     Io {
         /// What was attempted.
         action: &'static str,
@@ -38,6 +57,17 @@ pub enum FolderError {
         /// What the system said.
         source: io::Error,
     },
+}
+
+impl FolderError {
+    /// A file of the version `there` that this one cannot make sense of.
+    pub(super) fn version(path: &Path, reason: &impl ToString, there: &str) -> Self {
+        Self::Version {
+            path: path.to_owned(),
+            reason: reason.to_string(),
+            there: there.to_owned(),
+        }
+    }
 }
 
 /// A folder, which need not exist.
@@ -63,24 +93,23 @@ impl Place {
         &self.dir
     }
 
-    /// Reads the JSON document `name`, which is there.
-    pub fn read<T: DeserializeOwned>(&self, name: &str) -> Result<T, FolderError> {
-        let path = self.dir.join(name);
-        let bytes = fs::read(&path).map_err(failed("read", &path))?;
-        parsed(path, &bytes)
-    }
-
-    /// Reads the JSON document `name`, if it is there.
-    pub fn find<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>, FolderError> {
-        let path = self.dir.join(name);
-        match fs::read(&path) {
-            Ok(bytes) => parsed(path, &bytes).map(Some),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+    /// Names of all that is in it, in order; none if there is no such folder.
+    pub fn names(&self) -> Result<Vec<String>, FolderError> {
+        let entries = match fs::read_dir(&self.dir) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
             Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
-                Err(FolderError::NotAFolder(self.dir.clone()))
+                return Err(FolderError::NotAFolder(self.dir.clone()));
             }
-            Err(error) => Err(failed("read", &path)(error)),
+            Err(error) => return Err(failed("read", &self.dir)(error)),
+        };
+        let mut names = Vec::new();
+        for entry in entries {
+            let name = entry.map_err(failed("read", &self.dir))?.file_name();
+            names.push(name.to_string_lossy().into_owned());
         }
+        names.sort_unstable();
+        Ok(names)
     }
 
     /// Deletes the file `name`, if it is there.
@@ -98,21 +127,24 @@ impl Place {
     }
 }
 
-fn parsed<T: DeserializeOwned>(path: PathBuf, bytes: &[u8]) -> Result<T, FolderError> {
-    serde_json::from_slice(bytes).map_err(|error| FolderError::Unreadable {
-        path,
-        reason: error.to_string(),
-    })
-}
-
-/// A value as an indented JSON document.
+/// A value as an indented JSON document. What a terminal would obey, or nobody would see, is escaped in it.
 ///
 /// # Panics
 /// Never, for the types of this module: their keys are text.
 pub fn json(value: &impl serde::Serialize) -> Vec<u8> {
-    let mut bytes = serde_json::to_vec_pretty(value).expect("keys are text");
-    bytes.push(b'\n');
-    bytes
+    let text = serde_json::to_string_pretty(value).expect("keys are text");
+    let mut document = String::with_capacity(text.len() + 1);
+    for letter in text.chars() {
+        // Below, JSON's own escapes serve.
+        if letter >= '\u{7f}' && is_unsafe(letter) {
+            let escape = |unit: &u16| format!("\\u{unit:04x}");
+            document.extend(letter.encode_utf16(&mut [0; 2]).iter().map(escape));
+        } else {
+            document.push(letter);
+        }
+    }
+    document.push('\n');
+    document.into_bytes()
 }
 
 /// An error to leave alone: what was to be deleted is not there.

@@ -1,5 +1,6 @@
 //! The results folder of a study: a results folder for each setting, and what compares them.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -7,11 +8,11 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::folder::{Contents, Folder};
-use super::manifest::{Difference, compare, made_by};
+use super::folder::{Contents, Folder, MANIFEST, PAGE, hold_page};
+use super::held::{FileEntry, held, sealed, unseal};
+use super::manifest::{Difference, Manifest, compare, made_by};
 use super::picture;
 use super::place::{FolderError, Place, failed, json};
-use super::results::PAGE;
 use crate::metrics::comparison::{Comparison, Trials};
 
 const STUDY: &str = "study.json";
@@ -35,6 +36,9 @@ pub struct StudyManifest {
     pub plan: Value,
     /// Names of the settings, which are those of their folders.
     pub settings: Vec<String>,
+    /// The files that compare them, as soon as they are there, and those of the settings once all is, by their paths in the folder.
+    /// Manifests of settings are not among them: they hold what depends on the machine, and hashes of their own.
+    pub files: BTreeMap<String, FileEntry>,
 }
 
 impl StudyManifest {
@@ -47,7 +51,33 @@ impl StudyManifest {
             finished: false,
             plan,
             settings,
+            files: BTreeMap::new(),
         }
+    }
+
+    /// Adds the files of a setting's results.
+    pub fn add(&mut self, setting: &str, results: &Manifest) {
+        let files = results.results().into_iter();
+        self.files
+            .extend(files.map(|(name, entry)| (format!("{setting}/{name}"), entry)));
+    }
+
+    /// The files that compare the settings.
+    fn comparing(&self) -> BTreeMap<String, FileEntry> {
+        let own = self
+            .files
+            .iter()
+            .filter(|(name, _)| [COMPARISON, TABLE, PARETO].contains(&name.as_str()));
+        own.map(|(name, entry)| (name.clone(), entry.clone())).collect()
+    }
+
+    /// The files of a setting's results, by their names in its folder.
+    fn of(&self, setting: &str) -> BTreeMap<String, FileEntry> {
+        let name = |path: &str| Some(path.strip_prefix(setting)?.strip_prefix('/')?.to_owned());
+        let files = self.files.iter();
+        files
+            .filter_map(|(path, entry)| Some((name(path)?, entry.clone())))
+            .collect()
     }
 
     /// The version of desim and the commit that it was built from, where that is known.
@@ -94,7 +124,7 @@ impl StudyFolder {
     /// Whether `dir` holds a study.
     #[must_use]
     pub fn is_at(dir: &Path) -> bool {
-        dir.join(STUDY).is_file()
+        dir.join(STUDY).symlink_metadata().is_ok()
     }
 
     /// Its path.
@@ -114,15 +144,21 @@ impl StudyFolder {
     /// # Errors
     /// If it is no folder, or holds anything but a study, or cannot be read.
     pub fn contents(&self) -> Result<Option<StudyManifest>, FolderError> {
-        match self.place.find(STUDY) {
-            Ok(None) => match self.setting("").contents()? {
-                Contents::Nothing => Ok(None),
-                Contents::Results(_) => Err(FolderError::Foreign {
-                    dir: self.path().to_owned(),
-                    found: "manifest.json: the results of one scenario".to_owned(),
-                }),
-            },
-            found => found,
+        let names = self.place.names()?;
+        if names.iter().any(|name| name == STUDY) {
+            return unseal(self.path(), STUDY).map(Some);
+        }
+        // What is not whole was left by an attempt that was killed before it said what it was.
+        match names.iter().find(|name| *name != UNFINISHED) {
+            None => Ok(None),
+            Some(found) => Err(FolderError::Foreign {
+                dir: self.path().to_owned(),
+                found: if names.iter().any(|name| name == MANIFEST) {
+                    format!("{MANIFEST}: the results of one scenario")
+                } else {
+                    found.clone()
+                },
+            }),
         }
     }
 
@@ -132,47 +168,108 @@ impl StudyFolder {
     /// If the file system refuses.
     pub fn declare(&self, manifest: &StudyManifest) -> Result<(), FolderError> {
         fs::create_dir_all(self.path()).map_err(failed("create the folder", self.path()))?;
-        self.write(STUDY, &json(manifest))
+        self.write(STUDY, &sealed(manifest)).map(drop)
     }
 
-    /// The comparison, where it has been written.
+    /// The comparison, where `manifest` knows of one: all that compares the settings is as it was written.
     ///
     /// # Errors
-    /// If it cannot be read.
-    pub fn comparison(&self) -> Result<Option<Comparison>, FolderError> {
-        self.place.find(COMPARISON)
-    }
-
-    /// Writes what compares the settings: the table and the picture first, so that a comparison that is there is all there.
-    ///
-    /// # Errors
-    /// If the file system refuses.
-    pub fn write_comparison(&self, comparison: &Comparison, trials: &[Trials]) -> Result<(), FolderError> {
-        self.write_table(comparison, trials)?;
-        if let Some(pareto) = picture::pareto(comparison) {
-            self.write(PARETO, format!("{pareto}\n").as_bytes())?;
+    /// The file that is not.
+    pub fn comparison(&self, manifest: &StudyManifest) -> Result<Option<Comparison>, FolderError> {
+        if !manifest.files.contains_key(COMPARISON) {
+            return Ok(None);
         }
-        self.write(COMPARISON, &json(comparison))
+        let files = held(self.path(), &manifest.comparing(), &[COMPARISON])?;
+        let comparison = files.get(COMPARISON).map(Vec::as_slice).unwrap_or_default();
+        let comparison = serde_json::from_slice(comparison);
+        comparison
+            .map(Some)
+            .map_err(|error| FolderError::version(&self.path().join(COMPARISON), &error, &manifest.version))
     }
 
-    /// Puts the page of charts into the folder.
+    /// The comparison of a finished study, all of whose files are those that `manifest` describes, the results of every setting too;
+    /// but for pages of charts.
+    ///
+    /// # Errors
+    /// The file that is not the one that was written.
+    pub fn finished(&self, manifest: &StudyManifest) -> Result<Comparison, FolderError> {
+        for name in &manifest.settings {
+            let folder = self.setting(name);
+            match folder.contents()? {
+                Contents::Results(there) if there.finished && there.results() == manifest.of(name) => {
+                    folder.held(&there, &[])?;
+                }
+                Contents::Results(_) => {
+                    return Err(FolderError::Altered {
+                        path: folder.path().join(MANIFEST),
+                        wrong: "is of other results than the study compared".to_owned(),
+                    });
+                }
+                Contents::Nothing => {
+                    return Err(FolderError::Altered {
+                        path: folder.path().join(MANIFEST),
+                        wrong: "is missing".to_owned(),
+                    });
+                }
+            }
+        }
+        self.comparison(manifest)?.ok_or_else(|| FolderError::Altered {
+            path: self.path().join(STUDY),
+            wrong: "knows of no comparison".to_owned(),
+        })
+    }
+
+    /// Holds the page of charts against `manifest`, if there is one.
+    ///
+    /// # Errors
+    /// If it is not the one that was written.
+    pub fn hold_page(&self, manifest: &StudyManifest) -> Result<(), FolderError> {
+        hold_page(self.path(), manifest.files.get(PAGE))
+    }
+
+    /// Writes what compares the settings, and says so in `manifest`: only then does it count.
     ///
     /// # Errors
     /// If the file system refuses.
-    pub fn keep_page(&self, page: &str) -> Result<(), FolderError> {
-        self.write(PAGE, page.as_bytes())
+    pub fn write_comparison(
+        &self,
+        comparison: &Comparison,
+        trials: &[Trials],
+        manifest: &mut StudyManifest,
+    ) -> Result<(), FolderError> {
+        let mut files = vec![(COMPARISON, self.write(COMPARISON, &json(comparison))?)];
+        files.extend(self.write_table(comparison, trials)?.map(|entry| (TABLE, entry)));
+        if let Some(pareto) = picture::pareto(comparison) {
+            files.push((PARETO, self.write(PARETO, format!("{pareto}\n").as_bytes())?));
+        }
+        let files = files.into_iter().map(|(name, entry)| (name.to_owned(), entry));
+        manifest.files.extend(files);
+        self.declare(manifest)
+    }
+
+    /// Puts the page of charts into the folder of a finished study, and its name into the manifest.
+    ///
+    /// # Errors
+    /// If the file system refuses.
+    pub fn keep_page(&self, manifest: &StudyManifest, page: &str) -> Result<(), FolderError> {
+        let mut manifest = manifest.clone();
+        let entry = self.write(PAGE, page.as_bytes())?;
+        manifest.files.insert(PAGE.to_owned(), entry);
+        self.declare(&manifest)
     }
 
     #[cfg(feature = "parquet")]
-    fn write_table(&self, comparison: &Comparison, trials: &[Trials]) -> Result<(), FolderError> {
+    fn write_table(&self, comparison: &Comparison, trials: &[Trials]) -> Result<Option<FileEntry>, FolderError> {
         let (path, unfinished) = (self.path().join(TABLE), self.path().join(UNFINISHED));
-        super::comparison_table::write(&unfinished, comparison, trials).map_err(failed("write", &path))?;
-        fs::rename(&unfinished, &path).map_err(failed("write", &path))
+        let written = super::comparison_table::write(&unfinished, comparison, trials)
+            .and_then(|()| super::held::measure(&unfinished))
+            .and_then(|entry| fs::rename(&unfinished, &path).map(|()| entry));
+        written.map(Some).map_err(failed("write", &path))
     }
 
     #[cfg(not(feature = "parquet"))]
-    fn write_table(&self, _: &Comparison, _: &[Trials]) -> Result<(), FolderError> {
-        Ok(())
+    fn write_table(&self, _: &Comparison, _: &[Trials]) -> Result<Option<FileEntry>, FolderError> {
+        Ok(None)
     }
 
     /// Names of the files that are in it, without the settings' folders.
@@ -182,18 +279,15 @@ impl StudyFolder {
         all.into_iter().filter(|name| self.path().join(name).exists()).collect()
     }
 
-    /// Deletes what `manifest` says that desim put here, and the folders that were not there before.
+    /// Deletes what desim put here for these `settings`, and the folders that were not there before.
     ///
     /// # Errors
     /// If the file system refuses.
-    pub fn clear(&self, manifest: &StudyManifest) -> Result<(), FolderError> {
+    pub fn clear(&self, settings: &[String]) -> Result<(), FolderError> {
         // A name with a separator never came from desim: it must not reach out of the folder.
-        let names = manifest.settings.iter().filter(|name| !name.contains(['/', '\\', '.']));
+        let names = settings.iter().filter(|name| !name.contains(['/', '\\', '.']));
         for folder in names.map(|name| self.setting(name)) {
-            match folder.contents()? {
-                Contents::Results(there) => folder.clear(&there)?,
-                Contents::Nothing => folder.drop_trials()?,
-            }
+            folder.clear()?;
             // Whatever else has come into it meanwhile keeps it.
             let _ = fs::remove_dir(folder.path());
         }
@@ -204,12 +298,21 @@ impl StudyFolder {
         Ok(())
     }
 
+    /// Deletes what an attempt that was cut short has left beside a finished study. Where it cannot be deleted it does no harm.
+    pub fn tidy(&self, manifest: &StudyManifest) {
+        let _ = self.place.delete(UNFINISHED);
+        for name in &manifest.settings {
+            self.setting(name).tidy();
+        }
+    }
+
     /// Writes a file whole or not at all.
-    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
+    fn write(&self, name: &str, bytes: &[u8]) -> Result<FileEntry, FolderError> {
         let (path, unfinished) = (self.path().join(name), self.path().join(UNFINISHED));
         let written = File::create(&unfinished).and_then(|mut file| file.write_all(bytes));
         written
             .and_then(|()| fs::rename(&unfinished, &path))
+            .map(|()| FileEntry::of(bytes))
             .map_err(failed("write", &path))
     }
 }

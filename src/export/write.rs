@@ -1,6 +1,8 @@
 //! From the finished trials of an experiment to its results folder.
 
-use super::folder::{Contents, Folder, SUMMARY};
+use std::io;
+
+use super::folder::{Contents, Folder, PICTURES, SUMMARY};
 use super::manifest::{Manifest, TrialEntry};
 use super::names::Names;
 use super::picture::Scene;
@@ -31,6 +33,20 @@ pub enum WriteError {
     /// A file cannot be written.
     #[error(transparent)]
     Folder(#[from] FolderError),
+}
+
+impl WriteError {
+    /// Whether the place takes no files from this user, rather than that something went wrong.
+    #[must_use]
+    pub fn is_refused(&self) -> bool {
+        let (Self::Parts(PartsError::Io { source, .. }) | Self::Folder(FolderError::Io { source, .. })) = self else {
+            return false;
+        };
+        matches!(
+            source.kind(),
+            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem
+        )
+    }
 }
 
 /// Writes the results of `scenario`, all of whose trials are in `parts`, to `folder`: one trial at a time, in order,
@@ -78,6 +94,7 @@ pub fn write(
         folder.place(&name)?;
         manifest.files.insert(name, measured);
     }
+    folder.sweep(&manifest)?;
     folder.declare(&manifest)?;
     drop(parts);
     folder.drop_trials()?;
@@ -86,7 +103,7 @@ pub fn write(
 
 /// Draws a trial and answers the names of the files.
 fn draw(folder: &Folder, scene: &Scene, record: &TrialRecord) -> Result<[String; 2], FolderError> {
-    let names = ["final", "trajectories"].map(|name| format!("{name}_{}.svg", record.trial));
+    let names = PICTURES.map(|name| format!("{name}_{}.svg", record.trial));
     for (name, picture) in names
         .iter()
         .zip([scene.final_state(record), scene.trajectories(record)])

@@ -13,6 +13,7 @@ mod link;
 mod robot;
 mod rules;
 mod state;
+mod warnings;
 
 #[cfg(test)]
 mod tests;
@@ -24,3 +25,4 @@ pub use config::{
 pub use link::LinkFaultKind;
 pub use rules::problems;
 pub use state::{Change, Faults, Health, Subject};
+pub use warnings::{Stage, warnings};

@@ -1,20 +1,20 @@
-//! The figures by which settings are compared, each read off a single trial with the summary's own formulas. A key is the figure's
-//! path in `summary.json`, where it has one.
+//! The figures of a protocol, each declared once: its key, how it is read off a trial, and how it is estimated from trials. The summary of a
+//! scenario and the comparison of settings both take them from here. A key is the figure's path in `summary.json`, where it has one.
 //!
 //! Every figure is a ratio of sums over trials. Of a plain one a trial gives its value over 1; of one that a short trial may not
-//! have on its own, such as the time between mistakes, what it counts over what it watched. So all are estimated, resampled and
-//! tested alike, and no trial is left out.
+//! have on its own, such as the time between mistakes, what it counts over what it watched; of times that may be cut off, the sum of
+//! their pseudo-values over their number. So all are estimated and tested alike, and no trial is left out.
 
 use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
 
 use super::record::{TrafficRow, TrialRecord};
-use super::statistics::{Part, quantile};
-use super::summary::detection::{detection_times, durations, mistakes};
+use super::statistics::{Estimate, Estimator, Lasting, Observation, Part, gini, mean, pseudo_values, quantile};
+use super::summary::detection::{detection_times, mistake_durations, mistakes};
 use super::summary::faults::mending;
-use super::summary::frames::delivery_ratio;
-use super::summary::spread::{duplicate_ratio, informed_ratio};
+use super::summary::frames::delivery;
+use super::summary::spread::{duplicates, informed_ratio};
 use super::summary::{DIMENSIONLESS, SECONDS, STEPS, Unit, completion};
 use crate::engine::Span;
 
@@ -34,6 +34,8 @@ pub struct Figure {
     pub better: Better,
     /// Whether it is a ratio of sums, which a trial may not have on its own; otherwise a mean over trials.
     pub is_ratio: bool,
+    /// How it is estimated.
+    pub estimator: Estimator,
 }
 
 /// Which way a figure is better.
@@ -47,12 +49,15 @@ pub enum Better {
 }
 
 /// What a trial tells of a figure.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Numerator and denominator; both 0 where the trial tells nothing.
     pub part: Part,
     /// Whether the value was cut off: it would have grown larger, had the trial gone on.
     pub is_censored: bool,
+    /// The times that the trial tells of, where the figure is their mean; empty for other figures. Its part follows from those of all
+    /// trials: see [`pool`].
+    pub times: Vec<Observation>,
 }
 
 impl Sample {
@@ -65,13 +70,35 @@ impl Sample {
     fn ratio(part: Part) -> Self {
         Self {
             part,
-            is_censored: false,
+            ..Self::default()
         }
     }
 
     fn plain(value: Option<f64>) -> Self {
         Self::ratio(value.map_or([0.0; 2], |value| [value, 1.0]))
     }
+
+    fn times(times: Vec<Observation>) -> Self {
+        Self {
+            is_censored: times.iter().any(|seen| !seen.happened),
+            times,
+            ..Self::default()
+        }
+    }
+}
+
+/// Gives the samples of one setting and figure their parts where these follow from the times of all trials. Other samples stay as they
+/// are.
+pub fn pool(samples: &mut [Sample]) -> Option<Lasting> {
+    let times: Vec<&[Observation]> = samples.iter().map(|sample| sample.times.as_slice()).collect();
+    if times.iter().all(|times| times.is_empty()) {
+        return None;
+    }
+    let (parts, lasting) = pseudo_values(&times);
+    for (sample, part) in samples.iter_mut().zip(parts) {
+        sample.part = part;
+    }
+    Some(lasting)
 }
 
 /// How a figure is read off a trial.
@@ -92,7 +119,7 @@ impl Registry {
         registry.bandwidth(topics);
         registry.detection();
         registry.healing();
-        registry.gossip();
+        registry.gossip(topics);
         registry
     }
 
@@ -107,11 +134,23 @@ impl Registry {
         self.figures.iter().map(|(_, reading)| reading(record)).collect()
     }
 
+    /// The figure called `key` over the trials of `records`, and what is known of its times if it is their mean. Nothing where there is no
+    /// such figure.
+    #[must_use]
+    pub fn estimate(&self, key: &str, records: &[TrialRecord]) -> (Estimate, Lasting) {
+        let Some((figure, reading)) = self.figures.iter().find(|(figure, _)| figure.key == key) else {
+            return Default::default();
+        };
+        let mut samples: Vec<Sample> = records.iter().map(|record| reading(record)).collect();
+        let lasting = pool(&mut samples).unwrap_or_default();
+        (figure.estimate(&samples), lasting)
+    }
+
     fn add(
         &mut self,
         key: &str,
         name: &str,
-        (unit, better): (&'static str, Better),
+        (unit, better, estimator): Kind,
         reading: impl Fn(&TrialRecord) -> Sample + 'static,
     ) {
         let figure = Figure {
@@ -120,6 +159,7 @@ impl Registry {
             unit: unit.into(),
             better,
             is_ratio: false,
+            estimator,
         };
         self.figures.push((figure, Rc::new(reading)));
     }
@@ -128,40 +168,47 @@ impl Registry {
         &mut self,
         key: &str,
         name: &str,
-        kind: (&'static str, Better),
+        kind: Kind,
         reading: impl Fn(&TrialRecord) -> Option<f64> + 'static,
     ) {
         self.add(key, name, kind, move |record| Sample::plain(reading(record)));
     }
 
-    fn add_ratio(
-        &mut self,
-        key: &str,
-        name: &str,
-        kind: (&'static str, Better),
-        reading: impl Fn(&TrialRecord) -> Part + 'static,
-    ) {
-        self.add(key, name, kind, move |record| Sample::ratio(reading(record)));
+    fn add_ratio(&mut self, key: &str, name: &str, kind: Kind, reading: impl Fn(&TrialRecord) -> Part + 'static) {
+        self.add_as_ratio(key, name, kind, move |record| Sample::ratio(reading(record)));
+    }
+
+    fn add_times(&mut self, key: &str, name: &str, reading: impl Fn(&TrialRecord) -> Vec<Observation> + 'static) {
+        let kind = (SECONDS, Better::Lower, Estimator::Times);
+        self.add_as_ratio(key, name, kind, move |record| Sample::times(reading(record)));
+    }
+
+    fn add_as_ratio(&mut self, key: &str, name: &str, kind: Kind, reading: impl Fn(&TrialRecord) -> Sample + 'static) {
+        self.add(key, name, kind, reading);
         if let Some((figure, _)) = self.figures.last_mut() {
             figure.is_ratio = true;
         }
     }
 
     fn mission(&mut self) {
-        self.add(COMPLETION, "steps to completion", (STEPS, Better::Lower), |record| {
+        let steps = (STEPS, Better::Lower, Estimator::Count);
+        self.add(COMPLETION, "steps to completion", steps, |record| {
             completion(record).map_or(Sample::default(), |seen| Sample {
                 part: [seen.time, 1.0],
                 is_censored: !seen.happened,
+                times: Vec::new(),
             })
         });
-        let share = (DIMENSIONLESS, Better::Higher);
+        let share = (DIMENSIONLESS, Better::Higher, Estimator::Share);
         self.add_plain("completion_ratio", "trials completed", share, |record| {
             completion(record).map(|seen| f64::from(u8::from(seen.happened)))
         });
-        self.add_plain("robots_used", "robots used", ("robots", Better::Lower), |record| {
+        let robots = ("robots", Better::Lower, Estimator::Count);
+        self.add_plain("robots_used", "robots used", robots, |record| {
             record.robots_used().map(|robots| robots as f64)
         });
-        self.add_plain("lambda2_min", "least λ₂", share, TrialRecord::lambda2_min);
+        let lambda2 = (DIMENSIONLESS, Better::Higher, Estimator::Count);
+        self.add_plain("lambda2_min", "least λ₂", lambda2, TrialRecord::lambda2_min);
         self.add_plain(
             "connected_share",
             "time in one piece",
@@ -171,9 +218,9 @@ impl Registry {
     }
 
     fn radio(&mut self) {
-        let kind = (DIMENSIONLESS, Better::Higher);
-        self.add_plain("delivery_ratio", "copies delivered", kind, delivery_ratio);
-        let kind = (SECONDS, Better::Lower);
+        let kind = (DIMENSIONLESS, Better::Higher, Estimator::ShareOf);
+        self.add_ratio("delivery_ratio", "copies delivered", kind, delivery);
+        let kind = (SECONDS, Better::Lower, Estimator::Mean);
         for (key, name, q) in [
             ("latency_s.p50", "latency, median", 0.5),
             ("latency_s.p95", "latency, 95th percentile", 0.95),
@@ -194,11 +241,20 @@ impl Registry {
             let is_its = move |row: &TrafficRow| usize::from(row.topic) == number;
             self.traffic(&format!("bandwidth.by_topic.{topic}"), &format!("{topic}: "), is_its);
         }
+        let even = (DIMENSIONLESS, Better::Lower, Estimator::Fraction);
+        let ways: [(&str, &str, Bytes); 2] = [
+            ("load_imbalance.tx", "Gini of bytes sent", |row| row.sent.bytes()),
+            ("load_imbalance.rx", "Gini of bytes received", |row| {
+                row.received.bytes()
+            }),
+        ];
+        for (key, name, bytes) in ways {
+            self.add_plain(key, name, even, move |record| gini(&record.bytes_per_step(bytes)));
+        }
     }
 
     /// Bytes a robot and step of the rows that `counts` accepts, over the robots of a trial.
     fn traffic(&mut self, prefix: &str, topic: &str, counts: impl Fn(&TrafficRow) -> bool + Copy + 'static) {
-        type Bytes = fn(&TrafficRow) -> u64;
         let directions: [(&str, &str, Bytes); 4] = [
             ("tx_bytes_per_step", "bytes sent", |row| row.sent.bytes()),
             ("rx_bytes_per_step", "bytes received", |row| row.received.bytes()),
@@ -213,55 +269,67 @@ impl Registry {
             for (spread, q) in [("mean", None), ("median", Some(0.5)), ("max", Some(1.0))] {
                 let key = format!("{prefix}.{direction}.{spread}");
                 let name = format!("{topic}{words}, {spread} robot");
-                self.add_plain(&key, &name, ("B/step", Better::Lower), move |record| {
+                let kind = ("B/step", Better::Lower, Estimator::Mean);
+                self.add_plain(&key, &name, kind, move |record| {
                     let mut robots = record.bytes_per_step(|row| u64::from(counts(row)) * bytes(row));
+                    let Some(q) = q else {
+                        return mean(&robots).value;
+                    };
                     robots.sort_by(f64::total_cmp);
-                    let mean = || Some(robots.iter().sum::<f64>() / robots.len() as f64).filter(|_| !robots.is_empty());
-                    q.map_or_else(mean, |q| quantile(&robots, q))
+                    quantile(&robots, q)
                 });
             }
         }
     }
 
     fn detection(&mut self) {
-        let (less, more) = ((SECONDS, Better::Lower), (SECONDS, Better::Higher));
         let count = |record: &TrialRecord| mistakes(&record.detection).count() as f64;
-        self.add_ratio("detection.detection_time_s", "detection time T_D", less, |record| {
+        self.add_times("detection.detection_time_s", "detection time T_D", |record| {
             detection_times(&record.detection)
         });
         self.add_ratio(
             "detection.mistake_rate_hz",
             "mistake rate λ_M",
-            ("Hz", Better::Lower),
+            ("Hz", Better::Lower, Estimator::Rate),
             move |record| [count(record), record.detection.monitored_s],
         );
         self.add_ratio(
             "detection.mistake_recurrence_s",
             "mistake recurrence T_MR",
-            more,
+            (SECONDS, Better::Higher, Estimator::Recurrence),
             move |record| [record.detection.monitored_s, count(record)],
         );
-        self.add_ratio("detection.mistake_duration_s", "mistake duration T_M", less, |record| {
-            durations(&record.detection)
+        self.add_times("detection.mistake_duration_s", "mistake duration T_M", |record| {
+            mistake_durations(&record.detection)
         });
-        let share = (DIMENSIONLESS, Better::Higher);
+        let share = (DIMENSIONLESS, Better::Higher, Estimator::Share);
         self.add_ratio("detection.query_accuracy", "query accuracy P_A", share, |record| {
             let seen = &record.detection;
             [seen.monitored_s - seen.mistaken_s, seen.monitored_s]
         });
     }
 
-    fn gossip(&mut self) {
-        let (more, less) = ((DIMENSIONLESS, Better::Higher), (DIMENSIONLESS, Better::Lower));
+    fn gossip(&mut self, topics: &[&str]) {
+        let more = (DIMENSIONLESS, Better::Higher, Estimator::Share);
         self.add_plain(
             "spread.informed_ratio",
             "robots informed at the end",
             more,
             informed_ratio,
         );
-        self.add_plain("duplicates", "duplicates in messages delivered", less, |record| {
-            duplicate_ratio(record, |_| true)
+        let less = (DIMENSIONLESS, Better::Lower, Estimator::ShareOf);
+        self.add_ratio("duplicates", "duplicates in messages delivered", less, |record| {
+            duplicates(record, |_| true)
         });
+        for (number, topic) in topics.iter().enumerate() {
+            let key = format!("duplicates.by_topic.{topic}");
+            self.add_ratio(
+                &key,
+                &format!("{topic}: duplicates in messages delivered"),
+                less,
+                move |record| duplicates(record, |row| usize::from(row.topic) == number),
+            );
+        }
     }
 
     fn healing(&mut self) {
@@ -270,19 +338,11 @@ impl Registry {
             let seen: Vec<_> = episodes.map(|episode| mending(episode, record.simulated)).collect();
             seen
         };
-        self.add_ratio(
-            "healing.unmended_s",
-            "time unmended, a failure",
-            (SECONDS, Better::Lower),
-            move |record| {
-                let seen = harmful(record);
-                [seen.iter().map(|seen| seen.time).sum(), seen.len() as f64]
-            },
-        );
+        self.add_times("healing.unmended_s", "time unmended, a failure", harmful);
         self.add_ratio(
             "healing.healed_ratio",
             "failures healed",
-            (DIMENSIONLESS, Better::Higher),
+            (DIMENSIONLESS, Better::Higher, Estimator::ShareOf),
             move |record| {
                 let seen = harmful(record);
                 [
@@ -293,3 +353,23 @@ impl Registry {
         );
     }
 }
+
+impl Figure {
+    /// The figure over trials, one sample each.
+    #[must_use]
+    pub fn estimate(&self, samples: &[Sample]) -> Estimate {
+        self.estimator.estimate(&parts(samples))
+    }
+}
+
+/// The parts of trials.
+#[must_use]
+pub fn parts(samples: &[Sample]) -> Vec<Part> {
+    samples.iter().map(|sample| sample.part).collect()
+}
+
+/// Bytes of a row of traffic.
+type Bytes = fn(&TrafficRow) -> u64;
+
+/// Unit, which way is better, and how it is estimated.
+type Kind = (&'static str, Better, Estimator);

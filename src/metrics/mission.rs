@@ -3,11 +3,12 @@
 use std::cell::OnceCell;
 
 use crate::engine::ActorId;
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 use crate::protocol::Role;
 
 use super::connectivity::Chains;
 use super::faults::Failures;
+use super::record::{TargetSample, TargetState};
 use super::reports::Reports;
 
 /// What the swarm is asked to do (paper section 3.3): hold every target, with so many chains to the root.
@@ -64,7 +65,7 @@ impl<'a> Scene<'a> {
 
     fn chains(&self, root: ActorId) -> Chains {
         Chains::new(&self.reports.parents, root, |child, parent| {
-            self.are_live(child, parent) && self.apart(child, parent) <= self.radio_range
+            self.are_live(child, parent) && self.apart(child, parent) <= at_most(self.radio_range)
         })
     }
 }
@@ -76,6 +77,24 @@ impl Mission {
         (0..self.targets.len())
             .map(|target| self.best_connected(target, &chains, scene))
             .collect()
+    }
+
+    /// How each target stands.
+    pub(super) fn stands(&self, scene: Scene) -> Vec<TargetSample> {
+        let chains = scene.chains(self.root);
+        let targets = self.targets.iter().enumerate();
+        let stands = targets.map(|(target, MissionTarget { links, .. })| {
+            let worker_m = Some(self.nearest_worker(target, scene)).filter(|metres| metres.is_finite());
+            let holders = || self.holders(target, scene).into_iter();
+            let state = match worker_m {
+                None => TargetState::NoWorker,
+                Some(metres) if metres > self.reach => TargetState::Away,
+                Some(_) if holders().any(|robot| chains.count(robot) >= *links) => TargetState::Held,
+                Some(_) => TargetState::LinksShort,
+            };
+            TargetSample { state, worker_m }
+        });
+        stands.collect()
     }
 
     /// nl(t) of target number `target`.
@@ -123,7 +142,7 @@ impl Mission {
         scene
             .reports
             .working_for(target, self.worker_role)
-            .filter(move |robot| (scene.positions[robot.index()] - position).norm() <= self.reach)
+            .filter(move |robot| (scene.positions[robot.index()] - position).norm() <= at_most(self.reach))
             .filter(move |&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
     }
 
@@ -135,7 +154,9 @@ impl Mission {
             .enumerate()
             .filter(|(i, parent)| !named[..*i].contains(parent));
         distinct
-            .filter(|&(_, &parent)| scene.are_live(robot, parent) && scene.apart(robot, parent) <= self.link_limit)
+            .filter(|&(_, &parent)| {
+                scene.are_live(robot, parent) && scene.apart(robot, parent) <= at_most(self.link_limit)
+            })
             .count()
     }
 }
@@ -225,6 +246,32 @@ pub(super) mod tests {
         let stage = Stage::new();
         assert!(stage.accomplishes(&mission(1)) && stage.accomplishes(&mission(2)) && !stage.accomplishes(&mission(3)));
         assert_eq!(mission(2).links(stage.scene()), [2]);
+    }
+
+    #[test]
+    fn what_stands_in_the_way_of_a_target_is_told_apart() {
+        let stands = |links, wreck: &dyn Fn(&mut Stage)| {
+            let mut stage = Stage::new();
+            wreck(&mut stage);
+            let [sample] = mission(links).stands(stage.scene())[..] else {
+                panic!("there is one target");
+            };
+            (
+                sample.state,
+                sample.worker_m.map(|metres| (metres * 1000.0).round() / 1000.0),
+            )
+        };
+        assert_eq!(stands(2, &|_| {}), (TargetState::Held, Some(0.2)));
+        assert_eq!(stands(3, &|_| {}), (TargetState::LinksShort, Some(0.2)));
+        assert_eq!(
+            stands(2, &|stage| stage.silence(1)),
+            (TargetState::LinksShort, Some(0.2))
+        );
+        assert_eq!(
+            stands(2, &|stage| stage.positions[3].x = 2.7),
+            (TargetState::Away, Some(0.5))
+        );
+        assert_eq!(stands(2, &|stage| stage.silence(3)), (TargetState::NoWorker, None));
     }
 
     fn assert_fails_when(what: &str, wreck: impl FnOnce(&mut Stage)) {

@@ -26,7 +26,7 @@ pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget};
 pub use record::{
     ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotBytes, RobotState, SeriesEntry,
-    TopicFates, TrafficRow, TrialRecord, Volume,
+    TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Volume,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
 pub use spread::RumorSpread;

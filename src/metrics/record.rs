@@ -80,16 +80,20 @@ impl TrialRecord {
         (any > 0.0).then(|| count(|sample| sample.components == 1) / any)
     }
 
-    /// Each robot's bytes a control step, of whatever `bytes` takes from its rows; a robot without traffic counts with 0.
+    /// Each robot's bytes a control step of its own, of whatever `bytes` takes from its rows; a robot without traffic counts with 0.
+    /// Steps that it missed, being down, count.
     #[must_use]
     pub fn bytes_per_step(&self, bytes: impl Fn(&TrafficRow) -> u64) -> Vec<f64> {
         let mut sums = vec![0; self.robots.len()];
         for row in &self.traffic {
             sums[row.robot.index()] += bytes(row);
         }
-        // A run too short for a single control step lasts no longer than one.
-        let steps = self.steps.max(1) as f64;
-        sums.into_iter().map(|sum| sum as f64 / steps).collect()
+        // A run too short for a single control step of a robot lasts no longer than one.
+        let steps = self.robots.iter().map(|robot| robot.steps.max(1) as f64);
+        sums.into_iter()
+            .zip(steps)
+            .map(|(sum, steps)| sum as f64 / steps)
+            .collect()
     }
 
     /// The robots that failed at some time, each once, in order of ids.
@@ -333,6 +337,46 @@ pub struct ConnectivitySample {
     pub roles: Vec<u32>,
     /// Vertex-disjoint chains from each target's worker to the root, nl(t) of paper eq. 5, in order of targets.
     pub links: Vec<u32>,
+    /// How each target stands, in order of targets.
+    pub targets: Vec<TargetSample>,
+}
+
+/// A target at one instant.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TargetSample {
+    /// Whether it is held with its links, or what stands in the way.
+    pub state: TargetState,
+    /// How far its nearest live worker is from it, metres; `None` without one.
+    pub worker_m: Option<f64>,
+}
+
+/// Whether a target is held with its links, or what stands in the way first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum TargetState {
+    /// A worker is at it, with as many chains as it needs.
+    Held,
+    /// No live robot is its worker.
+    NoWorker,
+    /// Its worker is not there.
+    Away,
+    /// Its worker is there, with too few chains, or too few parents near.
+    LinksShort,
+}
+
+impl TargetState {
+    /// Every state.
+    pub const ALL: [Self; 4] = [Self::Held, Self::NoWorker, Self::Away, Self::LinksShort];
+
+    /// The name that tables use.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::NoWorker => "no_worker",
+            Self::Away => "away",
+            Self::LinksShort => "links_short",
+        }
+    }
 }
 
 impl ConnectivitySample {
@@ -380,4 +424,6 @@ pub struct RobotState {
     pub target: Option<u16>,
     /// The robots that it relies on to reach the root.
     pub parents: Vec<ActorId>,
+    /// Its control steps that were due in the trial. Robots with a phase of their own may have one fewer than others.
+    pub steps: u64,
 }

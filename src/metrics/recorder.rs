@@ -65,6 +65,8 @@ pub struct RunEnd {
     pub events: u64,
     /// Digest of every event, in order.
     pub digest: u128,
+    /// Control steps of each robot that were due, in order of ids.
+    pub robot_steps: Vec<u64>,
     /// Where every robot is, in order of ids.
     pub poses: Vec<Pose>,
 }
@@ -185,10 +187,12 @@ impl Recorder {
         self.latency.record(latency);
     }
 
-    /// A copy is still under way at the end of the run.
+    /// A copy is still under way at the end of the run, which it would have arrived `latency` after its transmission began. It counts
+    /// among the latencies: those of the copies that made it in time are too short.
     #[inline]
-    pub fn in_flight(&mut self, topic: Topic) {
+    pub fn in_flight(&mut self, topic: Topic, latency: Span) {
         self.in_flight[usize::from(topic.0)] += 1;
+        self.latency.record(latency);
     }
 
     /// `robot` reported a change.
@@ -282,6 +286,10 @@ impl Recorder {
                 .judge
                 .as_ref()
                 .map_or_else(Vec::new, |judge| judge.mission.links(scene)),
+            targets: self
+                .judge
+                .as_ref()
+                .map_or_else(Vec::new, |judge| judge.mission.stands(scene)),
         });
         self.series.sample(now, &self.traffic);
         self.trajectories
@@ -356,7 +364,7 @@ impl Recorder {
             spread: self.spread.into_records(),
             connectivity: self.connectivity,
             series: self.series.into_entries(),
-            robots: robots(self.reports, end.poses),
+            robots: robots(self.reports, end.poses, &end.robot_steps),
             trajectories: self.trajectories,
         }
     }
@@ -383,16 +391,18 @@ fn ledger(offered: &[u64], in_flight: &[u64], traffic: &[TrafficRow]) -> Vec<Top
 }
 
 /// The robots as they ended.
-fn robots(reports: Reports, poses: Vec<Pose>) -> Vec<RobotState> {
+fn robots(reports: Reports, poses: Vec<Pose>, steps: &[u64]) -> Vec<RobotState> {
     let states = reports.roles.into_iter().zip(reports.targets).zip(reports.parents);
     poses
         .into_iter()
         .zip(states)
-        .map(|(pose, ((role, target), parents))| RobotState {
+        .zip(steps)
+        .map(|((pose, ((role, target), parents)), &steps)| RobotState {
             pose,
             role: role.0,
             target,
             parents,
+            steps,
         })
         .collect()
 }
@@ -431,6 +441,7 @@ mod tests {
             simulated: SimTime::from_secs(10.0),
             events: 1000,
             digest: 7,
+            robot_steps: vec![100; 3],
             poses: vec![Pose::default(); 3],
         }
     }
@@ -446,7 +457,7 @@ mod tests {
         recorder.offered(Topic(1), 3);
         recorder.delivered(ActorId(1), Topic(1), MessageSize::alone(4), Span::from_secs(0.02));
         recorder.lost(ActorId(2), Topic(1), LossCause::Channel, MessageSize::alone(4));
-        recorder.in_flight(Topic(1));
+        recorder.in_flight(Topic(1), Span::from_secs(30.0));
         let record = recorder.finish(end());
         let mut expected = TopicFates {
             offered: 3,
@@ -460,7 +471,11 @@ mod tests {
             record.traffic.iter().map(|row| row.robot.0).collect::<Vec<_>>(),
             [0, 1, 2]
         );
-        assert_eq!(record.latency.max(), Some(Span::from_secs(0.02)));
+        assert_eq!(
+            (record.latency.count(), record.latency.max()),
+            (2, Some(Span::from_secs(30.0))),
+            "what is under way counts too"
+        );
         assert_eq!(record.outcome, Outcome::NoMission);
         assert_eq!((record.trial, record.seed, record.steps, record.digest), (4, 9, 100, 7));
     }
@@ -476,7 +491,7 @@ mod tests {
             recorder.delivered(ActorId(1), Topic(0), MessageSize::alone(4), Span::ZERO);
         }
         recorder.lost(ActorId(2), Topic(0), LossCause::Channel, MessageSize::alone(4));
-        recorder.in_flight(Topic(0));
+        recorder.in_flight(Topic(0), Span::ZERO);
         let _ = recorder.finish(end());
     }
 

@@ -18,8 +18,10 @@ mod drive;
 mod grid;
 mod occupancy;
 mod pid;
+mod reach;
 mod rules;
 mod spacing;
+mod survey;
 mod world;
 
 #[cfg(test)]
@@ -28,6 +30,8 @@ mod tests;
 pub use config::{ArenaConfig, DeployConfig, MotionConfig, ObstacleConfig, PidConfig};
 pub use contact::OVERLAP_TOLERANCE;
 pub use deploy::{DeployError, Hindrance, deploy};
+pub use reach::{Reach, reach};
 pub use rules::Problem;
 pub use spacing::Spacing;
+pub use survey::{Site, Survey};
 pub use world::World;

@@ -64,7 +64,7 @@ fn compared(prediction: &Prediction, summary: &Summary) -> Option<Estimate> {
     let mistakes = detection.mistakes.value as f64;
     let made = mistakes >= FEWEST_MISTAKES;
     let measured = match prediction.name {
-        "loss_ratio" => Some(lost(summary)?),
+        "loss_ratio" => Some(lost(summary)),
         "latency_s" => Some(summary.latency_s.mean),
         "status_tx_bytes_per_step" => Some(status(summary)?.directions.tx_bytes_per_step.mean),
         "status_rx_bytes_per_step" => Some(status(summary)?.directions.rx_bytes_per_step.mean),
@@ -80,18 +80,16 @@ fn compared(prediction: &Prediction, summary: &Summary) -> Option<Estimate> {
     measured.filter(|_| holds)
 }
 
-/// The share of copies lost, those under way at the end left out.
-fn lost(summary: &Summary) -> Option<Estimate> {
-    let fates = &summary.frames.total;
-    let in_flight = (fates.offered > 0).then(|| fates.in_flight as f64 / fates.offered as f64)?;
+/// The share of copies lost.
+fn lost(summary: &Summary) -> Estimate {
     let delivered = summary.delivery_ratio.estimate;
-    let lost = |delivered: f64| 1.0 - delivered - in_flight;
+    let lost = |delivered: f64| 1.0 - delivered;
     let [low, high] = delivered.ci95.map(|end| end.map(lost));
-    Some(Estimate {
+    Estimate {
         value: delivered.value.map(lost),
         ci95: [high, low],
         ..delivered
-    })
+    }
 }
 
 fn status(summary: &Summary) -> Option<&TopicBandwidth> {
@@ -164,17 +162,23 @@ fn explanation(name: &str, scene: &Scene<'_>, summary: &Summary) -> String {
 /// What the end of the run has to do with it.
 fn cut_off(name: &str, summary: &Summary) -> Option<String> {
     let fates = &summary.frames.total;
-    let failures = &summary.detection.failures;
+    let detection = &summary.detection;
     let share = |part: u64, all: u64| 100.0 * part as f64 / all as f64;
     match name {
         "loss_ratio" | "latency_s" | "status_rx_bytes_per_step" if fates.in_flight > 0 => {
             let share = share(fates.in_flight, fates.offered);
             Some(format!("copies were still under way at the end ({share:.2} %)"))
         }
-        "detection_time_s" if failures.detected < failures.observed => {
-            let share = share(failures.observed - failures.detected, failures.observed);
+        "detection_time_s" if detection.detection_time_s.cut_off > 0 => {
+            let share = share(detection.detection_time_s.cut_off, detection.failures.observed);
             Some(format!(
                 "failures ended, or the run, before they were detected ({share:.2} %)"
+            ))
+        }
+        "mistake_duration_s" | "query_accuracy" if detection.mistake_duration_s.cut_off > 0 => {
+            let share = share(detection.mistake_duration_s.cut_off, detection.mistakes.value);
+            Some(format!(
+                "mistakes were cut off before they ended in trust ({share:.2} %)"
             ))
         }
         _ => None,

@@ -1,15 +1,18 @@
 //! Why a robot was suspected, in words and times: each status that it sent meanwhile and what became of it.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
-use super::layout::{WIDTH, wrap};
+use super::grid::{Column, Grid};
+use super::layout::Page;
 use super::number::count;
 use crate::engine::{ActorId, SimTime};
 use crate::metrics::detection::{self, CopyFate, StatusTrace, Suspicion, Verdict};
 use crate::metrics::{FaultEpisode, FaultKind, TrialRecord};
 use crate::radio::LossCause;
+use crate::text::Style;
+
+/// What a line on statuses begins with that goes on with the one before.
+const GOES_ON: &str = "     ";
 
 /// Why one robot was suspected in one trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -130,25 +133,25 @@ impl Explanation {
         })
     }
 
-    /// The explanation as text, at most 80 columns wide: a list, then a section a suspicion. With a `chosen` one, its
+    /// The explanation as text: a list, then a section a suspicion. With a `chosen` one, its
     /// section alone, and every status on a line of its own.
     #[must_use]
-    pub fn text(&self, chosen: Option<usize>) -> String {
-        let mut text = String::new();
-        self.introduce(&mut text);
+    pub fn text(&self, chosen: Option<usize>, style: Style) -> String {
+        let mut page = Page::new(style);
+        self.introduce(&mut page);
         match chosen.and_then(|number| self.suspicions.get(number.checked_sub(1)?)) {
-            Some(suspicion) => self.tell(suspicion, true, &mut text),
+            Some(suspicion) => self.tell(suspicion, true, &mut page),
             None => {
-                self.list(&mut text);
+                self.list(&mut page);
                 self.suspicions
                     .iter()
-                    .for_each(|suspicion| self.tell(suspicion, false, &mut text));
+                    .for_each(|suspicion| self.tell(suspicion, false, &mut page));
             }
         }
-        text
+        page.text()
     }
 
-    fn introduce(&self, text: &mut String) {
+    fn introduce(&self, page: &mut Page) {
         let times = match self.suspicions.len() {
             0 => "was never suspected".to_owned(),
             1 => "was suspected once".to_owned(),
@@ -157,46 +160,48 @@ impl Explanation {
         let Self {
             robot, trial, scenario, ..
         } = self;
-        paragraph(
-            text,
+        page.paragraph(
+            "",
             "",
             &format!("Robot {robot} {times} in trial {trial} of {scenario}."),
         );
         if let Some(rule) = &self.rule {
-            paragraph(text, "", rule);
+            page.paragraph("", "", rule);
         }
         for outage in &self.outages {
             let until = outage
                 .until_s
                 .map_or_else(|| "to the end".to_owned(), |until| format!("to {until:.3} s"));
             let words = format!("It failed ({}) from {:.3} s {until}.", outage.effect, outage.from_s);
-            paragraph(text, "", &words);
+            page.paragraph("", "", &words);
         }
     }
 
-    fn list(&self, text: &mut String) {
+    fn list(&self, page: &mut Page) {
         if self.suspicions.is_empty() {
             return;
         }
-        line(text, "");
-        line(text, "    N  by robot     suspected       trusted  verdict       cause");
+        page.gap();
+        let [words, figures] = [Column::Words, Column::Figures];
+        let columns = [figures, figures, figures, figures, words, words];
+        let mut list = Grid::new(&columns, ["N", "by robot", "suspected", "trusted", "verdict", "cause"]);
         for suspicion in &self.suspicions {
             let trusted = suspicion
                 .trusted_s
                 .map_or_else(|| "never".to_owned(), |at| format!("{at:.3} s"));
-            let row = format!(
-                "{:>5}  {:>8}  {:>10.3} s  {trusted:>12}  {:<12}  {}",
-                suspicion.number,
-                suspicion.observer,
-                suspicion.suspected_s,
+            list.row([
+                suspicion.number.to_string(),
+                suspicion.observer.to_string(),
+                format!("{:.3} s", suspicion.suspected_s),
+                trusted,
                 spaced(suspicion.verdict),
-                spaced(suspicion.cause)
-            );
-            line(text, &row);
+                spaced(suspicion.cause),
+            ]);
         }
+        page.table(&list);
     }
 
-    fn tell(&self, suspicion: &Explained, singly: bool, text: &mut String) {
+    fn tell(&self, suspicion: &Explained, singly: bool, page: &mut Page) {
         let Explained {
             number,
             observer,
@@ -206,10 +211,10 @@ impl Explanation {
             ..
         } = suspicion;
         let robot = self.robot;
-        line(text, "");
+        page.gap();
         let judged = judgement(suspicion.verdict);
         let title = format!("{number}. Robot {observer} suspected robot {robot} at {suspected_s:.3} s: {judged}.");
-        paragraph(text, "", &title);
+        page.paragraph("", "", &title);
         let silence = suspected_s - heard_s;
         let sent = match statuses.len() {
             0 => format!("robot {robot} sent no status"),
@@ -228,16 +233,16 @@ impl Explanation {
         } else {
             words
         };
-        paragraph(text, "   ", &words);
+        page.paragraph("   ", "   ", &words);
         let size = if singly { 1 } else { usize::MAX };
         for alike in statuses.chunk_by(|a, b| a.fate.is_like(b.fate)) {
-            alike.chunks(size).for_each(|group| tell_alike(group, text));
+            alike.chunks(size).for_each(|group| tell_alike(group, page));
         }
         if let Some(at) = suspicion.cut_off_s {
             let words = format!(
                 "It counts as a mistake until {at:.3} s, when one of the two failed, they parted or the trial ended."
             );
-            paragraph(text, "   ", &words);
+            page.paragraph("   ", "   ", &words);
         }
         let end = match (suspicion.trusted_s, &suspicion.restored_by) {
             (Some(at), Some(status)) => format!(
@@ -251,7 +256,7 @@ impl Explanation {
             (Some(at), None) => format!("Robot {observer} trusted it again at {at:.3} s."),
             (None, _) => format!("Robot {observer} did not hear it again."),
         };
-        paragraph(text, "   ", &end);
+        page.paragraph("   ", "   ", &end);
     }
 }
 
@@ -347,10 +352,10 @@ impl Fate {
 }
 
 /// A line on statuses in a row that met the same fate.
-fn tell_alike(group: &[Status], text: &mut String) {
+fn tell_alike(group: &[Status], page: &mut Page) {
     let [first, .., last] = group else {
         for status in group {
-            tell_one(status, text);
+            tell_one(status, page);
         }
         return;
     };
@@ -364,12 +369,12 @@ fn tell_alike(group: &[Status], text: &mut String) {
     let far = format!("{:.3} to {:.3} m", range(f32::min), range(f32::max));
     let what = fate(first, &format!("out of range, {far} away"));
     let sent = format!("{:.3} to {:.3} s", first.sent_s, last.sent_s);
-    line(text, &format!("   {sent:>24}  {:>4} statuses {what}", group.len()));
+    page.paragraph(&format!("   {sent:>24}  {:>4} statuses ", group.len()), GOES_ON, &what);
 }
 
-fn tell_one(status: &Status, text: &mut String) {
+fn tell_one(status: &Status, page: &mut Page) {
     let what = fate(status, &format!("out of range, {:.3} m away", status.distance_m));
-    line(text, &format!("   {:>22.3} s       status {what}", status.sent_s));
+    page.paragraph(&format!("   {:>22.3} s       status ", status.sent_s), GOES_ON, &what);
 }
 
 fn fate(status: &Status, out_of_range: &str) -> String {
@@ -412,15 +417,4 @@ fn judgement(verdict: &str) -> &'static str {
 
 fn spaced(name: &str) -> String {
     name.replace('_', " ")
-}
-
-fn paragraph(text: &mut String, indent: &str, words: &str) {
-    for words in wrap(words, WIDTH - indent.len()) {
-        line(text, &format!("{indent}{words}"));
-    }
-}
-
-fn line(text: &mut String, words: &str) {
-    // Writing to a string does not fail.
-    let _ = writeln!(text, "{}", words.trim_end());
 }

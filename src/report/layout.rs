@@ -1,97 +1,129 @@
-//! Words on a terminal.
+//! Words on a terminal: paragraphs, entries and lists that keep within its width. Whatever comes from files is made safe here.
 
 use std::fmt::Write as _;
 
-use comfy_table::{ContentLineStyle, LineStyle, TableStyle};
+use super::grid::Grid;
+use crate::text::{Style, clean, clean_lines, columns, wrap};
 
-/// Columns that every line keeps within.
-pub const WIDTH: usize = 80;
-/// Tables: columns apart, a rule under the header.
-pub const RULED: TableStyle = TableStyle::new()
-    .header_lines(ContentLineStyle::none())
-    .header_separator(LineStyle::none().fill('─'))
-    .content_lines(ContentLineStyle::none());
 /// Columns of the names on the left.
 const MARGIN: usize = 14;
-
-/// Breaks `words` at blanks into lines of at most `width` characters; a longer word stands alone.
-pub fn wrap(words: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in words.split(' ').filter(|word| !word.is_empty()) {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
+/// Columns that words have at least beside anything else.
+const BESIDE: usize = 24;
+/// How far in lines begin that go on, and no further where there is little room.
+const INDENT: usize = 4;
 
 /// Text being laid out.
 pub struct Page {
-    /// What is laid out so far.
-    pub text: String,
-    /// Whether to use colours.
-    pub colour: bool,
+    text: String,
+    style: Style,
 }
 
 impl Page {
+    /// A page with nothing on it.
+    pub fn new(style: Style) -> Self {
+        Self {
+            text: String::new(),
+            style,
+        }
+    }
+
+    /// What is on it.
+    pub fn text(self) -> String {
+        self.text
+    }
+
     /// The name in bold, then the question that the results answer.
     pub fn title(&mut self, name: &str, question: Option<&str>) {
-        let name = self.bold(name);
-        self.line(&name);
-        for line in wrap(question.unwrap_or_default(), WIDTH) {
-            self.line(&line);
-        }
+        self.bold(name);
+        self.paragraph("", "", question.unwrap_or_default());
     }
 
     /// A heading, after an empty line.
     pub fn heading(&mut self, words: &str) {
-        self.line("");
-        for line in wrap(words, WIDTH) {
-            let line = self.bold(&line);
-            self.line(&line);
-        }
+        self.gap();
+        self.bold(words);
     }
 
     /// A name on the left, words on the right, over as many lines as they need.
     pub fn entry(&mut self, name: &str, words: &str) {
-        let mut name = name;
-        for line in wrap(words, WIDTH - MARGIN - 2) {
-            self.line(&format!("  {name:<MARGIN$}{line}"));
-            name = "";
+        if self.style.width < 2 + MARGIN + BESIDE {
+            let name = if name.is_empty() { name } else { &format!("{name}: ") };
+            return self.item(&format!("{name}{words}"));
         }
+        let name = clean(name);
+        let pad = " ".repeat(MARGIN.saturating_sub(columns(&name)));
+        self.paragraph(&format!("  {name}{pad}"), &" ".repeat(2 + MARGIN), words);
     }
 
     /// An item of a list, over as many lines as it needs, all but the first indented.
     pub fn item(&mut self, words: &str) {
-        let mut indent = "  ";
-        for line in wrap(words, WIDTH - 4) {
-            self.line(&format!("{indent}{line}"));
-            indent = "    ";
-        }
+        self.paragraph("  ", "    ", words);
     }
 
     /// Words over as many lines as they need, a little in.
     pub fn words(&mut self, words: &str) {
-        for line in wrap(words, WIDTH - 2) {
-            self.line(&format!("  {line}"));
+        self.paragraph("  ", "  ", words);
+    }
+
+    /// Words over as many lines as they need, after `first` on the first line and `rest` on the others; where there is little
+    /// room beside them, `first` is the words' beginning.
+    pub fn paragraph(&mut self, first: &str, rest: &str, words: &str) {
+        let words = clean(words);
+        let indent = columns(first).max(columns(rest));
+        if indent + BESIDE > self.style.width && indent > INDENT {
+            let indent = " ".repeat(INDENT);
+            return self.paragraph(&indent[..2], &indent, &format!("{} {words}", first.trim()));
+        }
+        let mut before = first;
+        for line in wrap(&words, self.style.width.saturating_sub(indent)) {
+            self.put(&format!("{before}{line}"));
+            before = rest;
         }
     }
 
-    /// A line as it is.
-    pub fn line(&mut self, words: &str) {
+    /// A table, in parts where it is too wide.
+    pub fn table(&mut self, grid: &Grid) {
+        for (part, lines) in grid.lines(self.style.width).iter().enumerate() {
+            if part > 0 {
+                self.gap();
+            }
+            lines.iter().for_each(|line| self.put(line));
+        }
+    }
+
+    /// An empty line.
+    pub fn gap(&mut self) {
+        self.put("");
+    }
+
+    fn bold(&mut self, words: &str) {
+        for line in wrap(&clean(words), self.style.width) {
+            if self.style.colour {
+                self.put(&format!("\u{1b}[1m{line}\u{1b}[0m"));
+            } else {
+                self.put(&line);
+            }
+        }
+    }
+
+    fn put(&mut self, line: &str) {
         // Writing to a string does not fail.
-        let _ = writeln!(self.text, "{}", words.trim_end());
+        let _ = writeln!(self.text, "{}", line.trim_end());
     }
+}
 
-    fn bold(&self, words: &str) -> String {
-        if self.colour {
-            format!("\u{1b}[1m{words}\u{1b}[0m")
-        } else {
-            words.to_owned()
-        }
+/// A message, line by line within `width` columns where that is known, as safe as everything else; what a line begins
+/// with goes on under its beginning.
+#[must_use]
+pub fn message(words: &str, width: Option<usize>) -> String {
+    let words = clean_lines(words.trim_end());
+    let Some(width) = width else {
+        return format!("{words}\n");
+    };
+    let mut page = Page::new(Style { colour: false, width });
+    for line in words.lines() {
+        let indent = " ".repeat(line.len() - line.trim_start_matches(' ').len());
+        page.paragraph(&indent, &format!("{indent}  "), line);
     }
+    page.text
 }

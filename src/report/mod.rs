@@ -3,8 +3,10 @@
 mod comparison;
 mod explanation;
 mod failures;
+mod grid;
 mod html;
 mod layout;
+mod missed;
 mod number;
 mod preflight;
 mod spread;
@@ -14,5 +16,7 @@ mod terminal;
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use html::{PAGE_MARK, PageInput, page, study_page};
+pub use layout::message;
+pub use missed::Asked;
 pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};

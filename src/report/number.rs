@@ -1,6 +1,7 @@
 //! Numbers as people read them.
 
 use crate::metrics::Estimate;
+use crate::metrics::summary::Lasted;
 
 /// What is not known.
 pub const NOTHING: &str = "–";
@@ -61,6 +62,21 @@ pub fn estimate(estimate: &Estimate, write: impl Fn(f64) -> String) -> String {
     match (estimate.value, estimate.ci95) {
         (value, [None, None]) => end(value),
         (value, [low, high]) => format!("{} [{}, {}]", end(value), end(low), end(high)),
+    }
+}
+
+/// How long something lasted on average, seconds, and what is known of what was cut off.
+pub fn lasted(lasted: &Lasted) -> String {
+    let mean = format!("{} s on average", estimate(&lasted.estimate, figure));
+    let cut_off = match lasted.cut_off {
+        0 => return mean,
+        cut_off => format!("{mean}, {} cut off", count(cut_off)),
+    };
+    match lasted.restricted_to {
+        Some(longest) if lasted.estimate.value.is_some() => {
+            format!("{cut_off}, longer than {} counted as that", seconds(longest))
+        }
+        _ => cut_off,
     }
 }
 

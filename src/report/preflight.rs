@@ -1,24 +1,18 @@
 //! What is expected of a scenario, before it is run.
 
-use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
-
-use super::layout::{Page, RULED, WIDTH};
+use super::grid::{Column, Grid};
+use super::layout::Page;
 use super::number::{figure, percent, seconds};
 use crate::predict::{Holds, Prediction, Preflight};
-
-/// Columns of what is expected, by how much it may be off, and what it rests on.
-const WIDTHS: [u16; 4] = [20, 18, 9, 33];
+use crate::text::Style;
 
 /// A time beyond which its length no longer matters, seconds: a year.
 const LONG: f64 = 365.25 * 86_400.0;
 
-/// The expectations as text, at most 80 columns wide; `question` is the scenario's.
+/// The expectations as text; `question` is the scenario's.
 #[must_use]
-pub fn preflight(preflight: &Preflight, question: Option<&str>, colour: bool) -> String {
-    let mut page = Page {
-        text: String::new(),
-        colour,
-    };
+pub fn preflight(preflight: &Preflight, question: Option<&str>, style: Style) -> String {
+    let mut page = Page::new(style);
     page.title(&preflight.scenario, question);
     for (holds, heading) in [
         (Holds::Throughout, "Expected throughout a run"),
@@ -34,7 +28,7 @@ pub fn preflight(preflight: &Preflight, question: Option<&str>, colour: bool) ->
         };
         if of_these().next().is_some() {
             page.heading(heading);
-            page.line(&table(of_these()));
+            page.table(&table(of_these()));
         }
     }
     if !preflight.not_predicted.is_empty() {
@@ -43,15 +37,12 @@ pub fn preflight(preflight: &Preflight, question: Option<&str>, colour: bool) ->
             page.item(&format!("{}: {}", unpredicted.what, unpredicted.why));
         }
     }
-    page.text
+    page.text()
 }
 
-fn table<'a>(predictions: impl Iterator<Item = &'a Prediction>) -> String {
-    let mut table = Table::new();
-    table.load_style(RULED).set_header(["", "value", "within", "rests on"]);
-    table
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(WIDTH as u16);
+fn table<'a>(predictions: impl Iterator<Item = &'a Prediction>) -> Grid {
+    let columns = [Column::Words, Column::Figures, Column::Figures, Column::Words];
+    let mut table = Grid::new(&columns, ["", "value", "within", "rests on"]);
     for prediction in predictions {
         let within = if prediction.accuracy > 0.0 {
             percent(prediction.accuracy / prediction.value.abs())
@@ -59,18 +50,9 @@ fn table<'a>(predictions: impl Iterator<Item = &'a Prediction>) -> String {
             "exact".to_owned()
         };
         let basis = format!("{}\n{}", prediction.formula, prediction.assumes);
-        table.add_row([prediction.what.to_owned(), value(prediction), within, basis]);
+        table.row([prediction.what.to_owned(), value(prediction), within, basis]);
     }
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((if index == 0 { 0 } else { 2 }, 0));
-        column.set_constraint(ColumnConstraint::Absolute(Width::Fixed(WIDTHS[index])));
-        column.set_cell_alignment(if index == 1 || index == 2 {
-            CellAlignment::Right
-        } else {
-            CellAlignment::Left
-        });
-    }
-    table.trim_fmt()
+    table
 }
 
 fn value(prediction: &Prediction) -> String {

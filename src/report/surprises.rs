@@ -50,6 +50,7 @@ mod tests {
     use super::*;
     use crate::metrics::Estimate;
     use crate::predict::{Holds, Prediction};
+    use crate::text::Style;
 
     fn surprise(what: &'static str, why: &str) -> Surprise {
         Surprise {
@@ -70,23 +71,17 @@ mod tests {
 
     #[test]
     fn a_reason_that_several_figures_share_is_said_once() {
-        let mut page = Page {
-            text: String::new(),
-            colour: false,
-        };
+        let mut page = Page::new(Style::PLAIN);
         let surprises = [
             surprise("loss", "robots moved"),
             surprise("latency", "in flight"),
             surprise("bytes", "robots moved"),
         ];
         section(&mut page, &surprises);
-        assert_eq!(page.text.matches("robots moved").count(), 1);
-        let places = ["loss", "bytes", "because robots moved", "latency", "because in flight"]
-            .map(|words| page.text.find(words));
-        assert!(
-            places.is_sorted() && places.iter().all(Option::is_some),
-            "{}",
-            page.text
-        );
+        let text = page.text();
+        assert_eq!(text.matches("robots moved").count(), 1);
+        let places =
+            ["loss", "bytes", "because robots moved", "latency", "because in flight"].map(|words| text.find(words));
+        assert!(places.is_sorted() && places.iter().all(Option::is_some), "{text}");
     }
 }

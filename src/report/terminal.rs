@@ -2,16 +2,17 @@
 
 use std::path::Path;
 
-use comfy_table::{CellAlignment, ContentArrangement, Table};
-
 use super::failures;
-use super::layout::{Page, RULED, WIDTH};
-use super::number::{NOTHING, count, estimate, figure, maybe, percent, seconds};
+use super::grid::Grid;
+use super::layout::Page;
+use super::missed::{self, Asked};
+use super::number::{NOTHING, count, estimate, figure, lasted, maybe, percent, seconds};
 use super::spread;
 use super::surprises;
 use crate::metrics::Summary;
 use crate::metrics::summary::{Detection, Directions, Quantity, Spread, TopicBandwidth};
 use crate::predict::Surprise;
+use crate::text::{Style, shown};
 
 /// What a report is made of.
 #[derive(Debug)]
@@ -20,6 +21,8 @@ pub struct Input<'a> {
     pub question: Option<&'a str>,
     /// The figures.
     pub summary: &'a Summary,
+    /// What the mission asks for, if there is one with targets.
+    pub asked: Option<&'a Asked>,
     /// Length of a control step, seconds.
     pub control_period_s: f64,
     /// Whether robots ran a failure detector.
@@ -32,8 +35,8 @@ pub struct Input<'a> {
     pub folder: &'a Path,
     /// Names of the files there.
     pub files: &'a [&'a str],
-    /// Whether to use colours.
-    pub colour: bool,
+    /// How it is laid out.
+    pub style: Style,
 }
 
 /// What the trials took, all together.
@@ -47,13 +50,10 @@ pub struct Speed {
     pub wall_s: f64,
 }
 
-/// The report as text, at most 80 columns wide.
+/// The report as text.
 #[must_use]
 pub fn terminal(input: &Input) -> String {
-    let mut page = Page {
-        text: String::new(),
-        colour: input.colour,
-    };
+    let mut page = Page::new(input.style);
     page.title(&input.summary.scenario, input.question);
     outcome(&mut page, input);
     failures::section(&mut page, input.summary);
@@ -64,14 +64,14 @@ pub fn terminal(input: &Input) -> String {
     detection(&mut page, input);
     surprises::section(&mut page, input.surprises);
     run(&mut page, input);
-    page.text
+    page.text()
 }
 
 fn outcome(page: &mut Page, input: &Input) {
     let summary = input.summary;
     page.heading("Mission");
     let Some(share) = summary.completion_ratio.estimate.value else {
-        page.line("  none: every trial ran to its time limit");
+        page.words("none: every trial ran to its time limit");
         return;
     };
     let [low, high] = summary
@@ -105,40 +105,33 @@ fn outcome(page: &mut Page, input: &Input) {
         "robots used",
         &format!("{} on average", estimate(&summary.robots_used.estimate, figure)),
     );
+    let mut name = "missed";
+    for sentence in missed::sentences(summary, input.asked) {
+        page.entry(name, &sentence);
+        name = "";
+    }
 }
 
 fn bandwidth(page: &mut Page, summary: &Summary) {
     let bandwidth = &summary.bandwidth;
     page.heading("Bandwidth of a robot: bytes a control step, headers included");
-    let mut table = Table::new();
-    table.load_style(RULED).set_header(HEADER);
-    table
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(WIDTH as u16);
+    let mut table = Grid::of_figures(&HEADER);
     for (name, topic) in &bandwidth.by_topic.0 {
         let TopicBandwidth {
             directions,
             lost_bytes_per_step,
             header_share,
         } = topic;
-        table.add_row(row(
+        table.row(row(
             name,
             directions,
             &cell(lost_bytes_per_step.median),
             &share(header_share),
         ));
     }
-    table.add_row(row("all topics", &bandwidth.total, "", ""));
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((2, 0));
-        column.set_cell_alignment(if index == 0 {
-            CellAlignment::Left
-        } else {
-            CellAlignment::Right
-        });
-    }
-    page.line(&table.trim_fmt());
-    page.line("");
+    table.row(row("all topics", &bandwidth.total, "", ""));
+    page.table(&table);
+    page.gap();
     let mean = |spread: &Spread| estimate(&spread.mean, figure);
     let Directions {
         tx_bytes_per_step: sent,
@@ -241,8 +234,8 @@ fn radio(page: &mut Page, summary: &Summary) {
         count(fates.in_flight)
     );
     page.entry("offered", &balance);
-    if let Some(duplicates) = &summary.duplicates {
-        let share = estimate(&duplicates.total, percent);
+    if summary.duplicates.any() {
+        let share = estimate(&summary.duplicates.total, percent);
         page.entry(
             "duplicates",
             &format!("{share} of what was delivered told its receiver nothing new"),
@@ -254,12 +247,12 @@ fn connectivity(page: &mut Page, summary: &Summary) {
     page.heading("Connectivity");
     let lambda2 = &summary.lambda2_min;
     if lambda2.min.is_none() {
-        page.line("  not sampled");
+        page.words("not sampled");
         return;
     }
     let least = format!(
         "{} median of trials, {} at worst",
-        estimate(&lambda2.estimate, figure),
+        estimate(&lambda2.median, figure),
         maybe(lambda2.min)
     );
     page.entry("least λ₂", &least);
@@ -271,11 +264,11 @@ fn detection(page: &mut Page, input: &Input) {
     let detection = &input.summary.detection;
     page.heading("Failure detection");
     if !input.detects {
-        page.line("  none: robots ran no failure detector");
+        page.words("none: robots ran no failure detector");
         return;
     }
     if detection.monitored_s.value <= 0.0 && detection.suspicions.value == 0 {
-        page.line("  no robot watched another");
+        page.words("no robot watched another");
         return;
     }
     let Detection {
@@ -293,10 +286,10 @@ fn detection(page: &mut Page, input: &Input) {
     let mistakes = match detection.mistakes.value {
         0 => "none".to_owned(),
         mistakes => format!(
-            "{}: of a pair of robots one every {} s, for {} s",
+            "{}: of a pair of robots one every {} s, for {}",
             count(mistakes),
             estimate(&detection.mistake_recurrence_s.estimate, figure),
-            estimate(&detection.mistake_duration_s.estimate, figure)
+            lasted(&detection.mistake_duration_s)
         ),
     };
     page.entry("mistakes", &mistakes);
@@ -306,11 +299,11 @@ fn detection(page: &mut Page, input: &Input) {
         &format!("robots that were well were trusted {accuracy} of the time"),
     );
     if failures.observed > 0 {
-        let time = estimate(&detection.detection_time_s.estimate, figure);
         let detected = format!(
-            "{} of {} detected by those who watched, after {time} s on average",
+            "{} of {} detected by those who watched, after {}",
             count(failures.detected),
-            count(failures.observed)
+            count(failures.observed),
+            lasted(&detection.detection_time_s)
         );
         page.entry("failures", &detected);
     }
@@ -341,8 +334,8 @@ fn run(page: &mut Page, input: &Input) {
         page.entry("speed", &speed);
     }
     page.entry("digest", &input.summary.digest);
-    page.entry("results", &input.folder.display().to_string());
+    page.entry("results", &shown(input.folder));
     page.entry("", &input.files.join(", "));
-    page.line("");
-    page.line("Figures in brackets are 95 % intervals over trials.");
+    page.gap();
+    page.paragraph("", "", "Figures in brackets are 95 % intervals over trials.");
 }

@@ -1,19 +1,15 @@
 //! What no field shows on its own: relations between fields, and bounds on memory and time.
 
-use std::f64::consts::PI;
-
 use crate::engine::Span;
 use crate::faults;
-use crate::motion::DeployConfig;
 use crate::protocol::Protocol as _;
 use crate::protocol::backbone::Backbone;
-use crate::protocol::gossip::FanOutConfig;
 use crate::protocol::heartbeat::Heartbeat;
 use crate::protocol::rumor::Rumor;
 use crate::quantity::Positive;
 
 use super::path::FieldPath;
-use super::{ProtocolConfig, Scenario, detector, gossip, limits};
+use super::{ProtocolConfig, Scenario, detector, gossip, limits, needs};
 
 /// Something wrong with a scenario whose fields are each of the right form.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +75,18 @@ pub fn problems(scenario: &Scenario) -> Vec<Problem> {
     }
     found.extend(name(scenario));
     found.extend(sections(scenario));
+    if found.is_empty() {
+        found.extend(room(scenario));
+    }
     found
+}
+
+/// Robots that find no place in one of the first trials.
+fn room(scenario: &Scenario) -> Option<Problem> {
+    let refusal = scenario.site().refusal(scenario.trials)?;
+    let help = "random places fill up long before bodies cover the ground: make room for twice the bodies";
+    let also = ["swarm.robots", "arena.size", "arena.obstacles", "motion.body_radius"];
+    Some(Problem::new("swarm.deploy", refusal, help).with(&also))
 }
 
 fn name(scenario: &Scenario) -> Option<Problem> {
@@ -169,6 +176,12 @@ fn periods(scenario: &Scenario) -> Vec<Problem> {
         let help = format!("expected at most {} s", limits::SECONDS);
         found.push(Problem::new("time_limit", message, help));
     }
+    let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
+    if width.max(height) > limits::METRES {
+        let message = format!("an arena of {width} m × {height} m is out of range");
+        let help = format!("expected at most {} m", limits::METRES);
+        found.push(Problem::new("arena.size", message, help));
+    }
     found
 }
 
@@ -229,37 +242,14 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
     let time_limit = scenario.time_limit.get();
     let steps = time_limit / scenario.control.period.get();
     let ticks = time_limit / scenario.motion.tick.get();
-    let sample_interval = scenario.metrics.sample_interval.get();
-    let samples = if sample_interval > 0.0 {
-        time_limit / sample_interval
-    } else {
-        0.0
-    };
-    let positions = robots * samples;
-    let gossip = &scenario.gossip;
-    let intervals = [
-        gossip.status.interval,
-        gossip.strand.interval,
-        gossip.request.interval,
-        gossip.relay.interval,
-    ];
-    let shortest = intervals
-        .into_iter()
-        .map(Positive::get)
-        .fold(f64::INFINITY, f64::min)
-        .max(scenario.control.period.get());
-    // Frames that a robot has in the air at once.
-    let overlap = 1.0 + scenario.radio.latency.mean().min(time_limit) / shortest;
-    let copies = robots * neighbours(scenario) * overlap * burst(scenario);
-    let bound = |path: &str, also: &[&str], what: &str, value: f64, most: f64, help: &str| {
+    let bound = |also: &[&str], what: &str, value: f64, most: f64, help: &str| {
         (value > most).then(|| {
             let message = format!("{value:.3e} {what}, more than the {most:.0e} that a trial may have");
-            Problem::new(path, message, help).with(also)
+            Problem::new("time_limit", message, help).with(also)
         })
     };
-    [
+    let counted = [
         bound(
-            "time_limit",
             &["control.period", "motion.tick"],
             "steps or ticks in a trial",
             steps.max(ticks),
@@ -267,61 +257,16 @@ fn sizes(scenario: &Scenario) -> Vec<Problem> {
             "make `time_limit` shorter, or `control.period` and `motion.tick` longer",
         ),
         bound(
-            "time_limit",
             &["control.period", "swarm.robots"],
             "control steps of all robots in a trial",
             robots * steps,
             limits::ROBOT_STEPS,
             "make `time_limit` shorter, `control.period` longer, or `swarm.robots` fewer",
         ),
-        bound(
-            "metrics.sample_interval",
-            &["time_limit", "swarm.robots"],
-            "sampled positions in a trial",
-            positions,
-            limits::SAMPLED_POSITIONS,
-            "make `metrics.sample_interval` longer",
-        ),
-        bound(
-            "radio.range",
-            &[
-                "radio.latency",
-                "swarm.robots",
-                "swarm.deploy",
-                "arena.size",
-                "motion.body_radius",
-            ],
-            "copies of frames under way at once",
-            copies,
-            limits::COPIES,
-            "make `radio.range` or `radio.latency` shorter, or spread fewer robots over more room",
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
-}
-
-/// Messages that a robot sends at once, an upper bound.
-fn burst(scenario: &Scenario) -> f64 {
-    match (&scenario.protocol, scenario.gossip.relay.fan_out) {
-        (ProtocolConfig::Rumor(rumor), FanOutConfig::Peers(peers)) => rumor.sources.rumors() as f64 * f64::from(peers),
-        (ProtocolConfig::Rumor(rumor), FanOutConfig::Everyone) => rumor.sources.rumors() as f64,
-        (ProtocolConfig::Backbone(_) | ProtocolConfig::Heartbeat, _) => 1.0,
+    ];
+    let mut found: Vec<Problem> = counted.into_iter().flatten().collect();
+    if found.is_empty() {
+        found.extend(needs::problems(scenario));
     }
-}
-
-/// Robots that hear a broadcast at the start, an upper bound: as dense as they are deployed, and never overlapping.
-fn neighbours(scenario: &Scenario) -> f64 {
-    let robots = f64::from(scenario.swarm.robots);
-    let range = scenario.radio.range.get();
-    let (width, height) = &scenario.arena.size;
-    let packed = (range / scenario.motion.body_radius.get() + 1.0).powi(2);
-    let within = |area: f64| robots * PI * range * range / area;
-    let expected = match &scenario.swarm.deploy {
-        DeployConfig::Cluster { radius } => within(PI * radius.get() * radius.get()),
-        DeployConfig::Uniform => within(width.get() * height.get()),
-        DeployConfig::At(_) => robots,
-    };
-    expected.min(packed).min(robots)
+    found
 }

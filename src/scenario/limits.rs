@@ -8,16 +8,22 @@ pub const TRIALS: u32 = 1_000_000;
 pub const NAME: usize = 64;
 /// Simulated seconds of a trial: thirty years.
 pub const SECONDS: f64 = 1e9;
+/// Width and height of an arena, metres: a million kilometres, which tables of 32-bit numbers hold many times.
+pub const METRES: f64 = 1e9;
 /// Shortest period of anything that repeats, seconds. Virtual time counts nanoseconds.
 pub const SHORTEST_PERIOD: f64 = 1e-6;
 /// Motion ticks, or control steps of a robot, in a trial.
 pub const STEPS: f64 = 1e8;
 /// Control steps of all robots in a trial.
 pub const ROBOT_STEPS: f64 = 1e10;
-/// Positions kept of a trial, robots times samples.
-pub const SAMPLED_POSITIONS: f64 = 1e8;
-/// Copies of frames under way at once: robots times robots in range times messages within a latency.
-pub const COPIES: f64 = 1e8;
+/// Bytes of memory that a trial may take by the estimate, and those from which it is warned of.
+pub const MEMORY: f64 = 8e9;
+/// See [`MEMORY`].
+pub const MUCH_MEMORY: f64 = 2e9;
+/// Events of a trial by the estimate: a processor takes about a day for 1e12.
+pub const EVENTS: f64 = 1e13;
+/// Events of all trials together from which they are warned of.
+pub const MANY_EVENTS: f64 = 1e12;
 /// Settings of a study.
 pub const SETTINGS: usize = 1000;
 /// Bytes of a scenario file.

@@ -16,6 +16,7 @@ mod generated;
 mod gossip;
 mod limits;
 mod lines;
+mod needs;
 mod overrides;
 mod path;
 mod read;
@@ -27,10 +28,11 @@ mod token;
 mod tree;
 mod warnings;
 
+pub use crate::text::Style;
 pub use file::{contents, json_schema, load, question, to_ron};
 pub use overrides::Override;
 pub use read::{examine, parse};
-pub use report::{Diagnostic, Place, Report, Style, Warnings};
+pub use report::{Diagnostic, Place, Report, Warnings};
 pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,
@@ -42,7 +44,7 @@ use serde::{Deserialize, Serialize};
 use crate::engine::Span;
 use crate::faults::FaultConfig;
 use crate::metrics::MetricsConfig;
-use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
+use crate::motion::{ArenaConfig, DeployConfig, MotionConfig, Site};
 use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
@@ -136,6 +138,18 @@ impl Scenario {
         Circumstances {
             robots: self.swarm.robots as usize,
             status_interval: self.gossip.status.longest_pause(period),
+        }
+    }
+
+    /// Where its robots are deployed, and by which draws.
+    #[must_use]
+    pub fn site(&self) -> Site<'_> {
+        Site {
+            deploy: &self.swarm.deploy,
+            arena: &self.arena,
+            robots: self.swarm.robots,
+            body_radius: self.motion.body_radius.get(),
+            seed: self.seed,
         }
     }
 }

@@ -64,7 +64,7 @@ impl FromStr for Override {
         }
         let value = equals + 1;
         let (node, faults) = tree::read(&text[value..]);
-        if let Some(first) = faults.first() {
+        if let Some(first) = faults.first.first() {
             let span = value + first.span.start..value + first.span.end;
             return Err(fault(span, &first.message, &first.help));
         }

@@ -14,7 +14,7 @@ use super::overrides::Override;
 use super::path::{FieldPath, Step, field_at, follow, head, path_at};
 use super::report::{Diagnostic, Place, Report, Warnings};
 use super::source::{Source, blank};
-use super::token::Span;
+use super::token::{Faults, Span};
 use super::tree::{self, MAX_DEPTH};
 use super::{Scenario, limits};
 
@@ -187,10 +187,10 @@ impl<'a, D: Document> Reader<'a, D> {
     }
 
     /// Reports what is wrong with the form of the text.
-    fn form(&mut self, faults: &[super::token::Fault], text: &str) {
+    fn form(&mut self, faults: &Faults, text: &str) {
         let root = tree::read(text).0;
-        self.more += faults.len().saturating_sub(limits::DIAGNOSTICS);
-        for fault in faults.iter().take(limits::DIAGNOSTICS) {
+        self.more += faults.more;
+        for fault in &faults.first {
             let path = root.as_ref().map(|root| path_at(root, fault.span.start, text));
             self.add(Finding {
                 message: fault.message.clone(),

@@ -8,11 +8,13 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, S
 
 use super::limits;
 use super::lines::{line_of, line_start};
+use crate::text::{Style, clean, clean_lines, columns};
 
 /// Longest line that is shown around an error, bytes.
 const LONGEST_LINE: usize = 400;
-/// Columns of a report that is not for a terminal.
-const WIDTH: usize = 80;
+
+/// Columns that a report takes before a line, most of all.
+const GUTTER: usize = 9;
 
 /// One thing that is wrong, or looks so, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -80,17 +82,17 @@ impl fmt::Display for Diagnostic {
 
 impl std::error::Error for Diagnostic {}
 
-/// A diagnostic as miette draws it.
+/// A diagnostic as miette draws it, safe to show.
 #[derive(Debug)]
-struct Drawn<'d> {
+struct Drawn {
     message: String,
-    diagnostic: &'d Diagnostic,
+    help: Option<String>,
     severity: Severity,
-    source: Option<NamedSource<Arc<str>>>,
+    source: Option<(NamedSource<String>, LabeledSpan)>,
 }
 
-impl<'d> Drawn<'d> {
-    fn new(diagnostic: &'d Diagnostic, severity: Severity) -> Self {
+impl Drawn {
+    fn new(diagnostic: &Diagnostic, severity: Severity, width: usize) -> Self {
         let place = diagnostic.place.as_ref();
         let shown = place.filter(|place| place.is_on_a_short_line());
         let kind = if severity == Severity::Warning { "warning: " } else { "" };
@@ -102,59 +104,78 @@ impl<'d> Drawn<'d> {
             _ => format!("{kind}{}", diagnostic.message),
         };
         Self {
-            message,
-            diagnostic,
+            message: clean_lines(&message).into_owned(),
+            help: diagnostic.help.as_ref().map(|help| clean_lines(help).into_owned()),
             severity,
-            source: shown.map(|place| NamedSource::new(&place.name, Arc::clone(&place.text))),
+            source: shown.map(|place| source(place, width.saturating_sub(GUTTER))),
         }
     }
 }
 
-impl fmt::Display for Drawn<'_> {
+/// The text of a place and its label, lines cut off where there are no columns for them, but not before the label's end. Signs are
+/// longer than what they stand for, so the span is counted again.
+fn source(place: &Place, room: usize) -> (NamedSource<String>, LabeledSpan) {
+    let Range { start, end } = place.span;
+    let parts = [0..start, start..end, end..place.text.len()];
+    let [before, within, after] = parts.map(|part| clean_lines(&place.text[part]));
+    let line = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let (above, line) = before.split_at(line);
+    let taken = columns(line) + columns(&within);
+    let cut_off = |line: &str| cut(line, room);
+    let mut text: String = above.split_inclusive('\n').map(cut_off).collect();
+    let span = (text.len() + line.len(), within.len());
+    text.push_str(line);
+    text.push_str(&within);
+    let mut rest = after.split_inclusive('\n');
+    text.extend(rest.next().map(|rest| cut(rest, room.saturating_sub(taken))));
+    text.extend(rest.map(cut_off));
+    let label = LabeledSpan::new(Some(clean(&place.label).into_owned()), span.0, span.1);
+    (NamedSource::new(clean(&place.name), text), label)
+}
+
+/// A line, or the end of one, within `room` columns.
+fn cut(line: &str, room: usize) -> String {
+    let (words, newline) = line.strip_suffix('\n').map_or((line, ""), |words| (words, "\n"));
+    if columns(words) <= room {
+        return line.to_owned();
+    }
+    let mut kept = String::new();
+    for letter in words.chars() {
+        kept.push(letter);
+        if columns(&kept) >= room {
+            kept.pop();
+            break;
+        }
+    }
+    kept + "…" + newline
+}
+
+impl fmt::Display for Drawn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
     }
 }
 
-impl std::error::Error for Drawn<'_> {}
+impl std::error::Error for Drawn {}
 
-impl miette::Diagnostic for Drawn<'_> {
+impl miette::Diagnostic for Drawn {
     fn severity(&self) -> Option<Severity> {
         Some(self.severity)
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let help = self.diagnostic.help.as_ref()?;
+        let help = self.help.as_ref()?;
         Some(Box::new(help))
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.source.as_ref().map(|source| source as &dyn SourceCode)
+        self.source.as_ref().map(|(source, _)| source as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let place = self.diagnostic.place.as_ref()?;
-        self.source.as_ref()?;
-        let label = LabeledSpan::new(Some(place.label.clone()), place.span.start, place.span.len());
-        Some(Box::new(std::iter::once(label)))
+        let (_, label) = self.source.as_ref()?;
+        Some(Box::new(std::iter::once(label.clone())))
     }
-}
-
-/// How a report looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Style {
-    /// Whether to use colours.
-    pub colour: bool,
-    /// Columns.
-    pub width: usize,
-}
-
-impl Style {
-    /// No colour, 80 columns.
-    pub const PLAIN: Self = Self {
-        colour: false,
-        width: WIDTH,
-    };
 }
 
 /// Everything that is wrong with a scenario: one diagnostic or more.
@@ -216,10 +237,10 @@ fn render(diagnostics: &[Diagnostic], more: usize, severity: Severity, style: St
     for diagnostic in diagnostics {
         // Writing to a string does not fail; were it to, the message alone still says what is wrong.
         if handler
-            .render_report(&mut text, &Drawn::new(diagnostic, severity))
+            .render_report(&mut text, &Drawn::new(diagnostic, severity, style.width))
             .is_err()
         {
-            text.push_str(&diagnostic.message);
+            text.push_str(&clean(&diagnostic.message));
         }
     }
     if more > 0 {

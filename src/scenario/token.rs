@@ -3,6 +3,8 @@
 
 use std::ops::Range;
 
+use super::limits;
+
 /// Where something stands: a range of bytes.
 pub type Span = Range<usize>;
 
@@ -15,6 +17,31 @@ pub struct Fault {
     pub message: String,
     /// What would be right.
     pub help: String,
+}
+
+/// What is wrong with the form of a text: the first of it, for more is of no help.
+#[derive(Debug, Default)]
+pub struct Faults {
+    /// The first, in the order in which they were found.
+    pub first: Vec<Fault>,
+    /// How many more there are.
+    pub more: usize,
+}
+
+impl Faults {
+    /// Whether nothing is wrong.
+    pub fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    /// Adds a fault, or counts it.
+    pub fn push(&mut self, fault: Fault) {
+        if self.first.len() < limits::DIAGNOSTICS {
+            self.first.push(fault);
+        } else {
+            self.more += 1;
+        }
+    }
 }
 
 /// A kind of token.
@@ -46,12 +73,12 @@ pub struct Token {
 }
 
 /// Cuts `text` into tokens; comments and a leading `#![enable(...)]` are left out.
-pub fn tokens(text: &str) -> (Vec<Token>, Vec<Fault>) {
+pub fn tokens(text: &str) -> (Vec<Token>, Faults) {
     let mut lexer = Lexer {
         text,
         at: 0,
         tokens: Vec::new(),
-        faults: Vec::new(),
+        faults: Faults::default(),
     };
     lexer.skip_attribute();
     while lexer.at < text.len() {
@@ -64,7 +91,7 @@ struct Lexer<'t> {
     text: &'t str,
     at: usize,
     tokens: Vec<Token>,
-    faults: Vec<Fault>,
+    faults: Faults,
 }
 
 impl Lexer<'_> {
@@ -228,7 +255,7 @@ mod tests {
     #[test]
     fn what_is_never_closed_is_said_where_it_begins() {
         for (text, start) in [("(a: \"x", 4), ("( /* x", 2), ("(r#\"x\"", 1)] {
-            assert_eq!(tokens(text).1[0].span.start, start);
+            assert_eq!(tokens(text).1.first[0].span.start, start);
         }
     }
 

@@ -1,8 +1,10 @@
 //! The shape of RON text: which field stands where. Errors found by `ron`, or later, are placed with it. It reads any
 //! text, says all that is wrong with its form, and goes on.
 
-use super::lines::{line_of, swallows};
-use super::token::{Fault, Kind, Span, Token, tokens};
+use std::cell::OnceCell;
+
+use super::lines::{Lines, swallows};
+use super::token::{Fault, Faults, Kind, Span, Token, tokens};
 
 /// How deep values may lie in each other. No scenario needs a tenth of it.
 pub const MAX_DEPTH: usize = 64;
@@ -57,26 +59,24 @@ impl Item {
 }
 
 /// Reads the shape of `text`. No node if there is no value at all.
-pub fn read(text: &str) -> (Option<Node>, Vec<Fault>) {
+pub fn read(text: &str) -> (Option<Node>, Faults) {
     let (tokens, faults) = tokens(text);
+    let broken = !faults.is_empty();
     let mut reader = Reader {
         text,
         tokens,
         next: 0,
         open: Vec::new(),
-        faults,
+        // What a comment or a string that never ends has swallowed is not missing.
+        faults: Faults::default(),
+        lines: OnceCell::new(),
     };
-    let broken = reader.faults.len();
     let node = reader.value();
     if node.is_some() && reader.faults.is_empty() && reader.peek().is_some() {
         let span = reader.here();
         reader.fault(span, "text after the end".into(), "remove it");
     }
-    if broken > 0 {
-        // What a comment or a string that never ends has swallowed is not missing.
-        reader.faults.truncate(broken);
-    }
-    (node, reader.faults)
+    (node, if broken { faults } else { reader.faults })
 }
 
 struct Reader<'t> {
@@ -85,7 +85,9 @@ struct Reader<'t> {
     next: usize,
     /// The brackets that are open.
     open: Vec<char>,
-    faults: Vec<Fault>,
+    faults: Faults,
+    /// The lines of the text, once a fault names one.
+    lines: OnceCell<Lines>,
 }
 
 impl Reader<'_> {
@@ -113,6 +115,10 @@ impl Reader<'_> {
     fn end(&self) -> usize {
         let last = self.next.checked_sub(1).and_then(|index| self.tokens.get(index));
         last.map_or(self.text.len(), |token| token.span.end)
+    }
+
+    fn line_of(&self, at: usize) -> usize {
+        self.lines.get_or_init(|| Lines::new(self.text)).of(at)
     }
 
     fn fault(&mut self, span: Span, message: String, help: &str) {
@@ -213,7 +219,7 @@ impl Reader<'_> {
         let help = format!("close it with `{}`", closing(bracket));
         match swallows(self.text, group) {
             Some((opening, swallowed)) => {
-                let line = line_of(self.text, swallowed);
+                let line = self.line_of(swallowed);
                 let message = format!("`{}` is not closed before line {line}", &self.text[opening.clone()]);
                 self.fault(opening, message, &help);
             }
@@ -222,7 +228,7 @@ impl Reader<'_> {
     }
 
     fn wrong_close(&mut self, opening: &Span, bracket: char, found: char) {
-        let line = line_of(self.text, opening.start);
+        let line = self.line_of(opening.start);
         let message = format!("`{found}` does not close the `{bracket}` of line {line}");
         let span = self.here();
         self.fault(span, message, &format!("close it with `{}`", closing(bracket)));
@@ -324,7 +330,7 @@ mod tests {
     use super::*;
 
     fn faults(text: &str) -> Vec<(usize, String)> {
-        let found = read(text).1;
+        let found = read(text).1.first;
         found
             .into_iter()
             .map(|fault| (fault.span.start, fault.message))
@@ -372,7 +378,8 @@ mod tests {
 
     #[test]
     fn a_million_brackets_are_refused_and_not_followed() {
-        assert_eq!(read(&"(".repeat(1_000_000)).1.len(), 1);
+        let faults = read(&"(".repeat(1_000_000)).1;
+        assert_eq!((faults.first.len(), faults.more), (1, 0));
     }
 
     fn nested(node: &Node, text: &str) -> bool {

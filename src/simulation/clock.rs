@@ -33,6 +33,17 @@ impl ControlSteps {
         self.ring[(self.next + steps) % self.ring.len()].1
     }
 
+    /// How many control steps each robot has had by `end`, that instant included, in order of ids.
+    pub fn due_by(&self, end: SimTime) -> Vec<u64> {
+        let period = self.period.as_nanos();
+        let mut steps = vec![0; self.ring.len()];
+        for (next, robot) in &self.ring {
+            let first = next.as_nanos() % period;
+            steps[robot.index()] = end.as_nanos().checked_sub(first).map_or(0, |since| since / period + 1);
+        }
+        steps
+    }
+
     /// Takes the next control step if it is due at `now`: the robot whose it is.
     pub fn take_due(&mut self, now: SimTime) -> Option<ActorId> {
         let step = self.ring.get_mut(self.next).filter(|step| step.0 <= now)?;
@@ -187,6 +198,12 @@ mod tests {
                 .flat_map(|round| phases.iter().zip(0..).map(move |(phase, robot)| (round * PERIOD + phase, robot)))
                 .collect();
             expected.sort_unstable();
+            for end in [0, PERIOD / 2, rounds * PERIOD - 1] {
+                let due: Vec<u64> = (0..phases.len() as u32)
+                    .map(|robot| taken.iter().filter(|step| step.0 <= end && step.1 == robot).count() as u64)
+                    .collect();
+                prop_assert_eq!(steps.due_by(at(end)), due);
+            }
             prop_assert_eq!(taken, expected);
         }
     }

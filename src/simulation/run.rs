@@ -263,6 +263,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             simulated: end,
             events: self.events,
             digest: self.digest.finish(),
+            robot_steps: self.control_steps.due_by(end),
             poses,
         })
     }

@@ -11,7 +11,7 @@ use desim::geometry::{Pose, Vec2};
 use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
 use desim::metrics::{
     ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotBytes, RobotState,
-    RumorSpread, SeriesEntry, TopicFates, TrafficRow, TrialRecord, Volume,
+    RumorSpread, SeriesEntry, TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Volume,
 };
 use desim::radio::LossCause;
 use desim::scenario::{Scenario, parse};
@@ -218,7 +218,24 @@ fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {
         components: if sample == 7 { 2 } else { 1 },
         roles: vec![2, 1, 4, 2],
         links: vec![1, u32::from(sample > 3)],
+        targets: targets(sample),
     }
+}
+
+/// The first target is held from the third sample on; to the second a worker sets out late, and has one link at last.
+fn targets(sample: u64) -> Vec<TargetSample> {
+    let (late, way) = (sample as f64, 3.0 / (sample + 1) as f64);
+    let first = match sample {
+        0..3 => (TargetState::Away, Some(3.0 - late)),
+        _ => (TargetState::Held, Some(0.1)),
+    };
+    let second = match sample {
+        0..3 => (TargetState::NoWorker, None),
+        3..6 => (TargetState::Away, Some(way)),
+        _ => (TargetState::LinksShort, Some(0.25)),
+    };
+    let sample = |(state, worker_m)| TargetSample { state, worker_m };
+    [first, second].map(sample).into()
 }
 
 /// Traffic that dies down; the last entry is of all topics.
@@ -262,6 +279,7 @@ fn state(robot: u32, odd: f64) -> RobotState {
         role: role(robot),
         target,
         parents,
+        steps: 600 - u64::from(robot % 2),
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use desim::experiment::{Ending, FinishedTrial, Parts, PartsError};
-use desim::export::{Contents, Folder, FolderError, Manifest};
+use desim::export::{Contents, Folder, FolderError, Manifest, sealed};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 use tempfile::tempdir;
@@ -149,7 +149,7 @@ fn a_folder_says_what_is_in_it() {
     assert!(matches!(contents(dir.path()), Err(FolderError::Foreign { found, .. }) if found == "file"));
 
     fs::write(dir.path().join("manifest.json"), "{\"version\": ").unwrap();
-    assert!(matches!(contents(dir.path()), Err(FolderError::Unreadable { .. })));
+    assert!(matches!(contents(dir.path()), Err(FolderError::Altered { .. })));
 
     interrupted(&dir.path().join("results"));
     let Ok(Contents::Results(manifest)) = contents(&dir.path().join("results")) else {
@@ -169,7 +169,8 @@ fn clearing_deletes_what_desim_wrote_and_nothing_else() {
     };
     let entry = manifest.files["summary.json"].clone();
     manifest.files.insert("../outside".to_owned(), entry);
-    folder.clear(&manifest).unwrap();
+    fs::write(dir.path().join("manifest.json"), sealed(&manifest)).unwrap();
+    folder.clear().unwrap();
     assert_eq!(results(dir.path()).into_keys().collect::<Vec<_>>(), ["notes.txt"]);
     assert!(!dir.path().join("manifest.json").exists());
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use desim::export::{Results, ResultsError};
+use desim::export::{Results, ResultsError, sealed};
 use desim::metrics::{Summary, TrialRecord};
 use desim::scenario::Scenario;
 use tempfile::{TempDir, tempdir};
@@ -68,6 +68,14 @@ fn complaint(damage: impl Fn(&Path)) -> String {
     error.replace(&place.path().display().to_string(), "…")
 }
 
+/// A change to a manifest, and the hash that desim would have given it: what is wrong then is no accident.
+fn forge(file: &Path, change: impl Fn(String) -> String) {
+    let text = fs::read_to_string(file).unwrap();
+    let mut manifest: serde_json::Value = serde_json::from_str(&change(text)).unwrap();
+    manifest.as_object_mut().unwrap().shift_remove("xxh3_128");
+    fs::write(file, sealed(&manifest)).unwrap();
+}
+
 fn edit(file: &Path, change: impl Fn(String) -> String) {
     let text = fs::read_to_string(file).unwrap();
     fs::write(file, change(text)).unwrap();
@@ -106,9 +114,65 @@ fn a_damaged_folder_is_refused_by_the_file_that_is_wrong() {
             }),
         ),
         (
-            "manifest forgets a table",
+            "manifest edited",
             complaint(|dir| {
                 edit(&dir.join("manifest.json"), |text| {
+                    text.replace("\"seed\": 1", "\"seed\": 2")
+                });
+            }),
+        ),
+        (
+            "manifest of a version before",
+            complaint(|dir| {
+                edit(&dir.join("manifest.json"), |text| {
+                    let (first, rest) = text.split_once("  \"xxh3_128\"").unwrap();
+                    first.to_owned() + rest.split_once('\n').unwrap().1
+                });
+            }),
+        ),
+        (
+            "a folder for a table",
+            complaint(|dir| {
+                fs::remove_file(dir.join(table)).unwrap();
+                fs::create_dir(dir.join(table)).unwrap();
+            }),
+        ),
+        (
+            "a device for a table",
+            complaint(|dir| {
+                fs::remove_file(dir.join(table)).unwrap();
+                std::os::unix::fs::symlink("/dev/zero", dir.join(table)).unwrap();
+            }),
+        ),
+        (
+            "a link to itself for a table",
+            complaint(|dir| {
+                fs::remove_file(dir.join(table)).unwrap();
+                std::os::unix::fs::symlink(table, dir.join(table)).unwrap();
+            }),
+        ),
+        (
+            "a table of a terabyte",
+            complaint(|dir| {
+                fs::File::options()
+                    .write(true)
+                    .open(dir.join(table))
+                    .unwrap()
+                    .set_len(1 << 40)
+                    .unwrap()
+            }),
+        ),
+        (
+            "a manifest of a terabyte",
+            complaint(|dir| {
+                let manifest = fs::File::options().write(true).open(dir.join("manifest.json")).unwrap();
+                manifest.set_len(1 << 40).unwrap();
+            }),
+        ),
+        (
+            "manifest forgets a table",
+            complaint(|dir| {
+                forge(&dir.join("manifest.json"), |text| {
                     text.replace("\"faults.parquet\"", "\"gone.txt\"")
                 });
             }),
@@ -116,7 +180,7 @@ fn a_damaged_folder_is_refused_by_the_file_that_is_wrong() {
         (
             "manifest leads outside",
             complaint(|dir| {
-                edit(&dir.join("manifest.json"), |text| {
+                forge(&dir.join("manifest.json"), |text| {
                     text.replace("\"final_0.svg\"", "\"../outside.svg\"")
                 });
             }),
@@ -124,7 +188,7 @@ fn a_damaged_folder_is_refused_by_the_file_that_is_wrong() {
         (
             "unfinished",
             complaint(|dir| {
-                edit(&dir.join("manifest.json"), |text| {
+                forge(&dir.join("manifest.json"), |text| {
                     text.replace("\"finished\": true", "\"finished\": false")
                 });
             }),
@@ -132,7 +196,7 @@ fn a_damaged_folder_is_refused_by_the_file_that_is_wrong() {
         (
             "scenario of another version",
             complaint(|dir| {
-                edit(&dir.join("manifest.json"), |text| {
+                forge(&dir.join("manifest.json"), |text| {
                     text.replace("\"time_limit\"", "\"limit_of_time\"")
                 });
             }),
@@ -175,6 +239,7 @@ fn a_table_of_another_shape_is_refused_by_the_column_that_is_wrong() {
         let mut changed = manifest.clone();
         changed["files"]["robots.parquet"] = manifest["files"]["latency.parquet"].clone();
         fs::write(dir.join("manifest.json"), changed.to_string()).unwrap();
+        forge(&dir.join("manifest.json"), |text| text);
     });
     assert!(
         swapped.contains("robots.parquet is of another version (it has no column `role`"),
@@ -213,7 +278,7 @@ fn results_that_do_not_belong_together_are_refused_with_the_difference() {
         let (place, dirs) = two(change);
         if let Some(version) = version {
             let own = format!("\"version\": \"{}\"", env!("CARGO_PKG_VERSION"));
-            edit(&dirs[1].join("manifest.json"), |text| {
+            forge(&dirs[1].join("manifest.json"), |text| {
                 text.replace(&own, &format!("\"version\": \"{version}\""))
             });
         }

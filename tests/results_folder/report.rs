@@ -3,24 +3,35 @@
 use std::path::Path;
 
 use desim::metrics::{Estimate, Outcome, Summary, TrialRecord};
+use desim::motion::Reach;
 use desim::predict::{Holds, Prediction, Surprise};
-use desim::report::{Input, Speed, terminal};
+use desim::report::{Asked, Input, Speed, terminal};
+use desim::text::{Style, columns};
 
 use crate::fixture::record;
 
 const TOPICS: [&str; 4] = ["status", "request", "parent strand", "child strand"];
+const COLOURED: Style = Style {
+    colour: true,
+    ..Style::PLAIN
+};
 const ROLES: [&str; 4] = ["free", "root", "networker", "worker"];
 
-fn report(records: &[TrialRecord], colour: bool) -> String {
-    report_with(records, &[], colour)
+fn report(records: &[TrialRecord], style: Style) -> String {
+    report_with(records, &[], style)
 }
 
-fn report_with(records: &[TrialRecord], surprises: &[Surprise], colour: bool) -> String {
+fn report_with(records: &[TrialRecord], surprises: &[Surprise], style: Style) -> String {
     terminal(&Input {
         question: Some(
             "Does the backbone still reach its targets when one frame in five is lost on its way to a robot?",
         ),
         summary: &Summary::of("loss20", &TOPICS, &ROLES, records),
+        asked: Some(&Asked {
+            links: vec![2, 2],
+            reach: vec![Reach::Open; 2],
+            robots: 9,
+        }),
         control_period_s: 0.1,
         detects: true,
         surprises,
@@ -31,7 +42,7 @@ fn report_with(records: &[TrialRecord], surprises: &[Surprise], colour: bool) ->
         },
         folder: Path::new("results/loss20"),
         files: &["bandwidth.parquet", "final_0.svg", "summary.json", "trials.parquet"],
-        colour,
+        style,
     })
 }
 
@@ -41,12 +52,12 @@ fn records(trials: u32) -> Vec<TrialRecord> {
 
 #[test]
 fn the_report_of_many_trials() {
-    insta::assert_snapshot!(report(&records(35), false));
+    insta::assert_snapshot!(report(&records(35), Style::PLAIN));
 }
 
 #[test]
 fn the_report_of_one_trial() {
-    insta::assert_snapshot!(report(&records(1), false));
+    insta::assert_snapshot!(report(&records(1), Style::PLAIN));
 }
 
 #[test]
@@ -56,7 +67,7 @@ fn the_report_without_a_mission_speaks_of_none() {
         connectivity: Vec::new(),
         ..record
     });
-    insta::assert_snapshot!(report(&still.collect::<Vec<_>>(), false));
+    insta::assert_snapshot!(report(&still.collect::<Vec<_>>(), Style::PLAIN));
 }
 
 #[test]
@@ -84,7 +95,7 @@ fn what_is_not_as_predicted_has_a_section_of_its_own() {
         surprise("status_rx_bytes_per_step", "status bytes received", "B/step", 280.0),
         surprise("mistake_duration_s", "duration of a mistake", "s", 0.75),
     ];
-    let report = report_with(&records(3), &surprises, false);
+    let report = report_with(&records(3), &surprises, Style::PLAIN);
     let section = report
         .split("\nNot as predicted")
         .nth(1)
@@ -99,6 +110,7 @@ fn a_report_of_robots_without_a_failure_detector_says_so_instead_of_figures() {
     let text = terminal(&Input {
         question: None,
         summary: &summary,
+        asked: None,
         control_period_s: 0.1,
         detects: false,
         surprises: &[],
@@ -109,7 +121,7 @@ fn a_report_of_robots_without_a_failure_detector_says_so_instead_of_figures() {
         },
         folder: Path::new("results/bare"),
         files: &[],
-        colour: false,
+        style: Style::PLAIN,
     });
     assert!(
         text.contains("none: robots ran no failure detector") && !text.contains("suspicions"),
@@ -118,16 +130,42 @@ fn a_report_of_robots_without_a_failure_detector_says_so_instead_of_figures() {
 }
 
 #[test]
-fn no_line_is_wider_than_80_columns() {
+fn every_width_is_kept_and_used() {
     for trials in [1, 35, 2000] {
-        let report = report(&records(trials), false);
-        let widest = report.lines().map(|line| line.chars().count()).max();
-        assert!(widest <= Some(80), "{report}");
+        for width in [60, 80, 100, 120, 160] {
+            let report = |width| report(&records(trials), Style { width, ..Style::PLAIN });
+            let widest = report(width).lines().map(columns).max().unwrap_or(0);
+            // A line is broken at the last blank that fits: what is left over is less than a long word. Or nothing is broken.
+            let is_used = widest + 20 > width || report(width) == report(1000);
+            assert!(
+                widest <= width && is_used,
+                "{widest} of {width} columns:\n{}",
+                report(width)
+            );
+        }
     }
 }
 
 #[test]
+fn a_terminal_that_is_narrow_breaks_words_and_no_figures() {
+    let report = report(
+        &records(35),
+        Style {
+            width: 30,
+            ..Style::PLAIN
+        },
+    );
+    let too_wide: Vec<&str> = report.lines().filter(|line| columns(line) > 30).collect();
+    // A digest and a heading's longest word are as wide as they are.
+    assert!(
+        too_wide.iter().all(|line| line.split_whitespace().count() == 1),
+        "{too_wide:?}"
+    );
+    insta::assert_snapshot!(report);
+}
+
+#[test]
 fn only_a_terminal_gets_colours() {
-    assert!(!report(&records(2), false).contains('\u{1b}'));
-    assert!(report(&records(2), true).contains('\u{1b}'));
+    assert!(!report(&records(2), Style::PLAIN).contains('\u{1b}'));
+    assert!(report(&records(2), COLOURED).contains('\u{1b}'));
 }

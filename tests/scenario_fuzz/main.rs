@@ -96,3 +96,87 @@ fn what_stands_in_a_mutant_given_as_an_override_is_read_or_refused() {
         }
     }
 }
+
+#[test]
+fn each_of_300_scenario_files_with_extreme_numbers_is_read_or_refused_with_line_and_field() {
+    let mut read = 0;
+    for (mutant, models) in mutations::extremes(MUTANTS) {
+        let label = format!("{} with {models:?}", mutant.label);
+        let models: Vec<Override> = models
+            .iter()
+            .map(|model| model.parse().expect("it has a value"))
+            .collect();
+        let start = Instant::now();
+        match parse("mutant.ron", &mutant.text, &models) {
+            Ok(_) => read += 1,
+            Err(report) => sound(&report, &mutant.text, &label),
+        }
+        assert!(start.elapsed() < PATIENCE, "{label}");
+    }
+    assert!(read > MUTANTS / 10, "only {read} are well, so that little is shown");
+}
+
+/// The least time that reading `text` takes, of a few tries: others may be using the machine.
+fn least_time(text: &str) -> Duration {
+    let time = || {
+        let start = Instant::now();
+        let report = parse("long.ron", text, &[]).expect_err("the file is wrong");
+        assert!(report.to_string().len() < 50_000, "the report is as long as the file");
+        start.elapsed()
+    };
+    (0..5).map(|_| time()).min().unwrap_or_default()
+}
+
+/// Four times the file takes four times as long, or sixteen times where time grows with its square: eight tell them apart.
+#[test]
+fn what_is_wrong_with_a_long_file_is_found_in_time_proportional_to_its_length() {
+    let base = "Scenario(name: \"a\", time_limit: 9.0, swarm: (robots: 2, deploy: Uniform), protocol: Heartbeat";
+    let broken: [(&str, fn(usize) -> String); 8] = [
+        ("numbers on a line behind an open bracket", |n| {
+            format!("(a: [{}", "1.5, ".repeat(n))
+        }),
+        ("numbers on lines behind an open bracket", |n| {
+            format!("(a: [\n{}", "1.5,\n".repeat(n))
+        }),
+        ("groups on a line behind an open bracket", |n| {
+            format!("(a: [{}", "(1, 2), ".repeat(n))
+        }),
+        ("closing brackets after many lines", |n| {
+            format!("{}({}", "// words\n".repeat(n), "]".repeat(n))
+        }),
+        ("missing commas", |n| format!("(a: [{}])", "1.5 ".repeat(n))),
+        ("stray letters", |n| format!("(a: [{}])", "? ".repeat(n))),
+        ("an open string", |n| format!("(a: \"{}", "x ".repeat(n))),
+        ("open comments in each other", |n| format!("(a: 1, {}", "/* ".repeat(n))),
+    ];
+    let mut texts: Vec<(String, [String; 2])> = broken
+        .iter()
+        .map(|(label, text)| ((*label).to_owned(), [20_000, 80_000].map(text)))
+        .collect();
+    let faults = |n| format!("{base}, faults: [{}])", "Crash(robots: [7], at: 1.0), ".repeat(n));
+    texts.push(("faults at unknown robots".to_owned(), [5_000, 20_000].map(faults)));
+    for (label, [short, long]) in texts {
+        let (short, long) = (least_time(&short), least_time(&long));
+        assert!(
+            long < short * 8 + Duration::from_millis(20),
+            "{label}: {short:?}, then {long:?}"
+        );
+    }
+}
+
+#[test]
+fn of_20_000_faults_at_unknown_robots_the_first_20_are_shown_and_the_others_counted() {
+    let faults = "Crash(robots: [7], at: 1.0),\n".repeat(20_000);
+    let text = format!(
+        "Scenario(name: \"a\", time_limit: 9.0, swarm: (robots: 2, deploy: Uniform), protocol: Heartbeat, faults: [\n{faults}])"
+    );
+    let report = parse("long.ron", &text, &[]).expect_err("there is no robot 7");
+    let lines: Vec<_> = report
+        .diagnostics
+        .iter()
+        .filter_map(|found| Some(found.place.as_ref()?.line))
+        .collect();
+    assert_eq!(lines, (2..22).collect::<Vec<_>>());
+    assert_eq!(report.more, 19_980);
+    assert!(report.to_string().ends_with("and 19980 more\n"), "{report}");
+}

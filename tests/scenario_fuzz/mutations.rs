@@ -79,10 +79,142 @@ const VALUES: [&str; 22] = [
     "r#\"raw\"#",
     "b\"bytes\"",
 ];
-const LETTERS: [&str; 22] = [
-    "(", ")", "[", "]", "{", "}", ",", ",,", ":", "::", "=", "\"", "'", "//", "/*", "*/", "#", "é", "🤖", "\u{202e}",
-    "\0", "\r",
+const LETTERS: [&str; 27] = [
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    ",",
+    ",,",
+    ":",
+    "::",
+    "=",
+    "\"",
+    "'",
+    "//",
+    "/*",
+    "*/",
+    "#",
+    "é",
+    "🤖",
+    "\u{202e}",
+    "\0",
+    "\r",
+    "\u{1b}[31m",
+    "\u{7}",
+    "\u{200b}",
+    "\u{feff}",
+    "Å\u{30a}\u{30a}",
 ];
+
+/// Numbers at the ends of what a field may hold, and a little within.
+const EXTREMES: [&str; 24] = [
+    "1e308",
+    "1e-308",
+    "-0.0",
+    "0",
+    "1e39",
+    "1e-39",
+    "1e18",
+    "1e12",
+    "1e9",
+    "1e6",
+    "999999",
+    "1e-6",
+    "1e-9",
+    "1e-12",
+    "0.9999999999999999",
+    "0.5",
+    "1",
+    "255",
+    "65535",
+    "100000",
+    "1000000",
+    "4294967295",
+    "18446744073709551615",
+    "3.0000000000000004",
+];
+/// Models with extreme settings, each with the section and the field that it is a value of.
+const MODELS: [&str; 38] = [
+    "detector=Timeout(1e9)",
+    "detector=Timeout(1e308)",
+    "detector=Timeout(1e-9)",
+    "detector=NfdS(shift: 1e12)",
+    "detector=PhiAccrual(dialect: Chitchat, threshold: 1e300)",
+    "detector=PhiAccrual(dialect: Akka, threshold: 1e-300, window: 100000)",
+    "detector=PhiAccrual(dialect: Akka, acceptable_pause: Seconds(1e300), min_std_deviation: Seconds(1e300))",
+    "detector=PhiAccrual(dialect: Cassandra, max_interval: Seconds(86400), initial_interval: Seconds(86400))",
+    "detector=Swim(probe_interval: 1e300, probe_timeout: 1e299, leave_timeout: 1e301, suspicion_mult: 1e300)",
+    "detector=Swim(probe_interval: 1.5, indirect_checks: 255, retransmit_mult: 255, max_awareness: 255)",
+    "radio.latency=Gamma(shape: 1e308, scale: 1e-308)",
+    "radio.latency=Gamma(shape: 1e-300, scale: 1e300)",
+    "radio.latency=Gamma(shape: 1e-3, scale: 10)",
+    "radio.latency=Gamma(shape: 1e9, scale: 1e-9)",
+    "radio.latency=LogNormal(median: 1e-300, sigma: 1e300)",
+    "radio.latency=LogNormal(median: 0.01, sigma: 30)",
+    "radio.latency=Normal(mean: 1e-300, std_dev: 1e300)",
+    "radio.latency=Normal(mean: 0.1, std_dev: 1e-300, min: 0.1)",
+    "radio.latency=Normal(mean: 1e308, std_dev: 1e308, min: 1e308)",
+    "radio.latency=Uniform(min: 0, max: 1e308)",
+    "radio.latency=Exponential(mean: 1e308)",
+    "radio.latency=Constant(1e308)",
+    "radio.loss=GilbertElliott(good_to_bad: 1e-300, bad_to_good: 1e-300)",
+    "radio.loss=GilbertElliott(good_to_bad: 1e-12, bad_to_good: 1e-12, good_loss: 0.3, bad_loss: 0.999999999)",
+    "radio.loss=GilbertElliott(good_to_bad: 1, bad_to_good: 1)",
+    "radio.loss=Distance(at_range: 1, exponent: 1e300)",
+    "radio.loss=Distance(at_range: 1, exponent: 1e-300)",
+    "radio.loss=Bernoulli(0.9999999999999999)",
+    "swarm.deploy=Uniform",
+    "swarm.deploy=Cluster(radius: 1e-300)",
+    "swarm.deploy=Cluster(radius: 1e300)",
+    "wander=RandomWaypoint(speed: 1e-300, pause: 1e300)",
+    "wander=RandomWalk(speed: 0.02, leg: 1e-300)",
+    "gossip.status=(interval: 1e18, jitter: 1.0)",
+    "gossip.status.send=OnChange(max_interval: 1e300, repetition: 4294967295)",
+    "gossip.relay=(interval: 1e-6, fan_out: Peers(1))",
+    "protocol=Rumor(rounds: Poisson, sources: Random(64), size: 60000)",
+    "faults=[Partition(line: ((-1e308, 1e308), (1e308, -1e308))), Radiation(within: Disc(at: (1e308, 0), radius: 1e-308), hazard: 1e-300)]",
+];
+
+/// The first `count` scenario files with extreme numbers in them, each with what is set beside: one that is no scenario any more
+/// is refused, and the others have to be borne.
+pub fn extremes(count: u32) -> Vec<(Mutant, Vec<&'static str>)> {
+    let files: Vec<_> = shipped::files()
+        .into_iter()
+        .map(|path| {
+            (
+                path.display().to_string(),
+                std::fs::read_to_string(path).expect("shipped files can be read"),
+            )
+        })
+        .collect();
+    let streams = Streams::new(21, 0);
+    let drawn = (0..count).map(|number| {
+        let mut random: Philox = streams.keyed(Purpose::new("test.extremes")).at(number, 0, 0);
+        let (name, text) = files.choose(&mut random).expect("some scenarios are shipped");
+        let mut text = text.clone();
+        for _ in 0..random.random_range(0..3) {
+            let numeric = |field: &Field| text[field.value.clone()].trim().parse::<f64>().is_ok();
+            let numbers: Vec<Field> = fields(&text).into_iter().filter(numeric).collect();
+            let field = numbers.choose(&mut random).expect("a scenario has numbers");
+            text.replace_range(
+                field.value.clone(),
+                EXTREMES.choose(&mut random).expect("there are some"),
+            );
+        }
+        let models = (0..random.random_range(0..3)).map(|_| *MODELS.choose(&mut random).expect("there are some"));
+        let models = models.collect();
+        let mutant = Mutant {
+            label: format!("extreme {number} of {name}"),
+            text,
+            misspelt: None,
+        };
+        (mutant, models)
+    });
+    drawn.collect()
+}
 
 /// The first `count` mutants of scenario files.
 pub fn mutants(count: u32) -> Vec<Mutant> {

@@ -1,7 +1,9 @@
 //! Studies: their files, the command that runs them, and what people read of them.
 
 mod command;
+mod factors;
 mod files;
+mod harm;
 mod report;
 #[path = "../shipped/mod.rs"]
 mod shipped;

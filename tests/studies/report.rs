@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use desim::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials};
-use desim::metrics::figures::{Better, Figure, Sample};
+use desim::metrics::figures::{Better, COMPLETION, Figure, Sample};
+use desim::metrics::statistics::Estimator;
 use desim::report::{ComparisonInput, comparison, describe, study_page};
+use desim::text::{Style, columns};
 
 fn figure(key: &str, name: &str, unit: &'static str, better: Better, is_ratio: bool) -> Figure {
     Figure {
@@ -13,6 +15,11 @@ fn figure(key: &str, name: &str, unit: &'static str, better: Better, is_ratio: b
         unit: unit.into(),
         better,
         is_ratio,
+        estimator: match key {
+            COMPLETION => Estimator::Count,
+            _ if is_ratio => Estimator::Rate,
+            _ => Estimator::Mean,
+        },
     }
 }
 
@@ -24,6 +31,7 @@ fn made_up(reference: Option<usize>, stopping: Option<Stopping>) -> Comparison {
             Sample {
                 part: [steps.min(limit), 1.0],
                 is_censored: steps > limit,
+                ..Sample::default()
             }
         };
         (0..12).map(sample).collect::<Vec<_>>()
@@ -31,14 +39,14 @@ fn made_up(reference: Option<usize>, stopping: Option<Stopping>) -> Comparison {
     let bytes = |mean: f64| {
         let sample = move |trial: u32| Sample {
             part: [mean + f64::from(trial % 5) / 50.0, 1.0],
-            is_censored: false,
+            ..Sample::default()
         };
         (0..12).map(sample).collect::<Vec<_>>()
     };
     let mistakes = |rate: f64| {
         let sample = move |trial: u32| Sample {
             part: [(rate * f64::from(3 + trial % 3)).round(), 5000.0],
-            is_censored: false,
+            ..Sample::default()
         };
         (0..12).map(sample).collect::<Vec<_>>()
     };
@@ -95,18 +103,18 @@ fn made_up(reference: Option<usize>, stopping: Option<Stopping>) -> Comparison {
     compared
 }
 
-fn shown(compared: &Comparison) -> String {
+fn shown(compared: &Comparison, style: Style) -> String {
     comparison(&ComparisonInput {
         comparison: compared,
         folder: Path::new("results/made-up"),
         files: &["comparison.json", "comparison.parquet", "study.json"],
-        colour: false,
+        style,
     })
 }
 
 #[test]
 fn the_report_of_a_study_with_a_reference() {
-    insta::assert_snapshot!(shown(&made_up(Some(0), None)));
+    insta::assert_snapshot!(shown(&made_up(Some(0), None), Style::PLAIN));
 }
 
 #[test]
@@ -119,7 +127,7 @@ fn the_report_of_a_study_without_a_reference_that_added_trials() {
         cap: 12,
         reached: false,
     };
-    insta::assert_snapshot!(shown(&made_up(None, Some(stopping))));
+    insta::assert_snapshot!(shown(&made_up(None, Some(stopping)), Style::PLAIN));
 }
 
 #[test]
@@ -130,11 +138,30 @@ fn every_difference_is_said_in_words() {
 }
 
 #[test]
-fn no_line_is_wider_than_80_columns() {
+fn every_width_is_kept_and_used() {
     for reference in [Some(0), None] {
-        let report = shown(&made_up(reference, None));
-        assert!(report.lines().all(|line| line.chars().count() <= 80), "{report}");
+        for width in [60, 80, 100, 120, 160] {
+            let report = |width| shown(&made_up(reference, None), Style { width, ..Style::PLAIN });
+            let widest = report(width).lines().map(columns).max().unwrap_or(0);
+            let is_used = widest + 20 > width || report(width) == report(1000);
+            assert!(
+                widest <= width && is_used,
+                "{widest} of {width} columns:\n{}",
+                report(width)
+            );
+        }
     }
+}
+
+#[test]
+fn the_report_on_a_narrow_terminal() {
+    insta::assert_snapshot!(shown(
+        &made_up(Some(0), None),
+        Style {
+            width: 60,
+            ..Style::PLAIN
+        }
+    ));
 }
 
 #[test]

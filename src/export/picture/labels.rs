@@ -9,14 +9,14 @@ const DIRECTIONS: u32 = 16;
 
 /// A rectangle on the sheet, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Box {
+pub struct Rect {
     /// Its upper left corner.
     pub from: Vec2,
     /// Its lower right corner.
     pub to: Vec2,
 }
 
-impl Box {
+impl Rect {
     /// A rectangle about its centre.
     pub fn about(centre: Vec2, size: Vec2) -> Self {
         Self {
@@ -42,14 +42,14 @@ impl Box {
 
 /// What of a sheet is taken.
 pub struct Taken {
-    sheet: Box,
-    taken: Vec<Box>,
+    sheet: Rect,
+    taken: Vec<Rect>,
 }
 
 impl Taken {
     /// A part of the sheet, with marks of this size at these places.
-    pub fn new(sheet: Box, marks: &[Vec2], size: f64) -> Self {
-        let taken = marks.iter().map(|&mark| Box::about(mark, Vec2::new(size, size)));
+    pub fn new(sheet: Rect, marks: &[Vec2], size: f64) -> Self {
+        let taken = marks.iter().map(|&mark| Rect::about(mark, Vec2::new(size, size)));
         Self {
             sheet,
             taken: taken.collect(),
@@ -57,7 +57,7 @@ impl Taken {
     }
 
     /// Takes the free rectangle of `size` that is nearest to the mark `at`, if there is one no further away than `most` pixels.
-    pub fn place(&mut self, at: Vec2, size: Vec2, most: f64) -> Option<Box> {
+    pub fn place(&mut self, at: Vec2, size: Vec2, most: f64) -> Option<Rect> {
         let mut distance = 7.0;
         while distance <= most {
             // To the lower right first: there a label hides least of what its mark is joined to.
@@ -66,7 +66,7 @@ impl Taken {
                     std::f64::consts::FRAC_PI_4 + f64::from(step) * std::f64::consts::TAU / f64::from(DIRECTIONS);
                 let towards = unit(turn);
                 let centre = at + towards * distance + Vec2::new(towards.x * size.x, towards.y * size.y) / 2.0;
-                Box::about(centre, size)
+                Rect::about(centre, size)
             });
             let mut free =
                 free.filter(|label| self.sheet.holds(label) && !self.taken.iter().any(|other| other.overlaps(label)));

@@ -2,7 +2,7 @@
 
 use svg::{Document, Node};
 
-use super::labels::{Box, NEAR, Taken, room};
+use super::labels::{NEAR, Rect, Taken, room};
 use super::shapes::{element, line, marker, path, polyline, text};
 use super::style::{AXIS, Marker, Shape, Stroke, TEXT};
 use crate::geometry::Vec2;
@@ -246,7 +246,7 @@ impl Plane<'_> {
 /// What stands beside the points, and where, so that nothing overlaps.
 struct Labels {
     /// For each point.
-    placed: Vec<(String, Box)>,
+    placed: Vec<(String, Rect)>,
     /// What the numbers mean, if the labels are numbers.
     list: Vec<String>,
 }
@@ -254,11 +254,11 @@ struct Labels {
 impl Labels {
     /// Names where all of them find a place near their marks, else numbers and a list.
     fn of(marks: &[Vec2], names: &[String], right: f64) -> Self {
-        let sheet = |right: f64| Box {
+        let sheet = |right: f64| Rect {
             from: Vec2::new(LEFT + 2.0, TOP - 10.0),
             to: Vec2::new(LEFT + ACROSS + right, TOP + UP - 2.0),
         };
-        let place = |labels: &[String], right: f64, most: f64| -> Option<Vec<(String, Box)>> {
+        let place = |labels: &[String], right: f64, most: f64| -> Option<Vec<(String, Rect)>> {
             let mut taken = Taken::new(sheet(right), marks, MARK);
             let placed = labels
                 .iter()
@@ -302,7 +302,7 @@ mod tests {
         assert_eq!(labels.placed.len(), marks.len());
         for (place, (name, label)) in labels.placed.iter().enumerate() {
             let others = labels.placed[place + 1..].iter().map(|(_, other)| *other);
-            let marks = marks.iter().map(|&mark| Box::about(mark, Vec2::new(MARK, MARK)));
+            let marks = marks.iter().map(|&mark| Rect::about(mark, Vec2::new(MARK, MARK)));
             for other in others.chain(marks) {
                 assert!(!label.overlaps(&other), "{name}: {label:?} and {other:?}");
             }

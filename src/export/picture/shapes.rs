@@ -6,6 +6,7 @@ use svg::node::element::Element;
 
 use super::style::{Marker, Shape, Stroke};
 use crate::geometry::{Vec2, unit};
+use crate::text::clean;
 
 /// An element with its attributes.
 pub fn element<const N: usize>(name: &str, attributes: [(&str, &str); N]) -> Element {
@@ -51,7 +52,7 @@ pub fn text(at: Vec2, size: f64, anchor: &str, colour: &str, words: &str) -> Ele
     text.assign("x", format!("{:.1}", at.x));
     text.assign("y", format!("{:.1}", at.y));
     text.assign("font-size", size);
-    text.append(Text::new(words));
+    text.append(Text::new(clean(words)));
     text
 }
 

@@ -122,13 +122,12 @@ fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
         };
         records.by_trial.insert(trial[row], record);
     }
-    let extremes = ["latency_min_ns", "latency_max_ns", "latency_sum_ns"].map(|name| table.optional_counts(name));
-    let [least, most, sum] = extremes;
-    let (least, most, sum) = (least?, most?, sum?);
+    let [least, most] = ["latency_min_ns", "latency_max_ns"].map(|name| table.optional_counts(name));
+    let (least, most, sum) = (least?, most?, table.optional_numbers("latency_sum_ns")?);
     for (row, trial) in trial.iter().enumerate() {
         if let (Some(least), Some(most), Some(sum)) = (least[row], most[row], sum[row]) {
             let record = records.of(*trial)?;
-            record.latency = LatencyHistogram::exactly(least, most, sum.into());
+            record.latency = LatencyHistogram::exactly(least, most, sum as u128);
         }
     }
     Ok(())

@@ -20,7 +20,7 @@ pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
 
 type Col = Column<Row>;
 
-/// One column a role and one a target: `robots_<role>`, `links_<target>`.
+/// One column a role and three a target: `robots_<role>`, `links_<target>`, `target_<target>`, `worker_m_<target>`.
 pub fn columns(names: &Names, targets: usize) -> Vec<Column<Row>> {
     let mut columns = vec![
         Col::id("trial", |row| row.trial),
@@ -38,6 +38,15 @@ pub fn columns(names: &Names, targets: usize) -> Vec<Column<Row>> {
     columns.extend(
         (0..targets).map(|index| Col::optional_id(format!("links_{index}"), move |row| at(&row.sample.links, index))),
     );
+    columns.extend((0..targets).flat_map(|index| {
+        let target = move |row: &Row| row.sample.targets.get(index).copied();
+        let state = move |row: &Row| target(row).map_or("", |target| target.state.name()).into();
+        let worker = move |row: &Row| target(row).and_then(|target| target.worker_m);
+        [
+            Col::text(format!("target_{index}"), state),
+            Col::optional_f64(format!("worker_m_{index}"), worker),
+        ]
+    }));
     columns
 }
 

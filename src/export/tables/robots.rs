@@ -35,5 +35,6 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::list_of_ids("parents", |row| {
             row.state.parents.iter().map(|parent| parent.0).collect()
         }),
+        Col::count("steps", |row| row.state.steps),
     ]
 }

@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::contrasts::{Grid, Levels};
 use super::{Design, Trials, Verdict};
-use crate::metrics::statistics::{Estimate, Part, Tested, mean, paired_permutation, ratio_of_sums, sign_permutation};
+use crate::metrics::statistics::{
+    Estimate, Estimator, Part, Tested, difference, paired_permutation, ratio_of_sums, sign_permutation,
+};
 
 /// A figure's mean over all settings in which a factor has one level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -126,18 +128,22 @@ impl Parts {
     }
 }
 
-/// The mean of what pairs of trials differ by, with its interval; nothing where one of them has no value.
-fn paired_difference(against: &[f64], at: &[f64]) -> Estimate {
-    let differences: Vec<f64> = against.iter().zip(at).map(|(against, at)| at - against).collect();
-    let n = differences.len() as u64;
-    if differences.iter().all(|difference| difference.is_finite()) {
-        mean(&differences)
-    } else {
-        Estimate {
-            n,
-            ..Estimate::default()
-        }
+/// How means over settings are estimated: of values that each trial has, such as these parts, equal ones are certain only where a figure is
+/// fixed by the scenario.
+fn estimator(design: &Design, figure: usize) -> Estimator {
+    match design.figures[figure].estimator {
+        Estimator::Mean | Estimator::Fraction => Estimator::Mean,
+        _ => Estimator::Count,
     }
+}
+
+/// Values that trials have as parts of their mean. Nothing where one of them has none.
+fn as_parts(values: Vec<f64>) -> Vec<Part> {
+    let known = values.iter().all(|value| value.is_finite());
+    values
+        .into_iter()
+        .map(|value| if known { [value, 1.0] } else { [0.0; 2] })
+        .collect()
 }
 
 impl LevelMean {
@@ -151,13 +157,12 @@ impl LevelMean {
             .filter(|(_, factor)| factor.levels.len() > 1)
         {
             for (level, label) in factor.levels.iter().enumerate() {
-                let values = parts.by_trial(&grid.with(&[(place, level)]));
-                let known = values.iter().all(|value| value.is_finite());
+                let values = as_parts(parts.by_trial(&grid.with(&[(place, level)])));
                 means.push(Self {
                     figure: design.figures[figure].key.clone(),
                     factor: factor.name.clone(),
                     level: label.clone(),
-                    mean: if known { mean(&values) } else { Estimate::default() },
+                    mean: estimator(design, figure).estimate(&values),
                 });
             }
         }
@@ -175,7 +180,8 @@ impl Effect {
         tests: usize,
     ) -> (Self, Option<Tested>) {
         let [against, at] = [levels.against, levels.level].map(|level| grid.with(&[(levels.factor, level)]));
-        let difference = paired_difference(&parts.by_trial(&against), &parts.by_trial(&at));
+        let sides = [&against, &at].map(|settings| as_parts(parts.by_trial(settings)));
+        let difference = difference(estimator(design, figure), [&sides[0], &sides[1]], true);
         let base = parts.mean(&against);
         let strata: Vec<[&[Part]; 2]> = against
             .iter()
@@ -235,9 +241,9 @@ impl Interaction {
         };
         // (y₁₁ − y₀₁) − (y₁₀ − y₀₀): twice the mean over both settings with a plus less that over both with a minus.
         let [[a0, a1], [b0, b1]] = place;
-        let side = |cells: [Vec<usize>; 2]| -> Vec<f64> {
+        let side = |cells: [Vec<usize>; 2]| {
             let values = parts.by_trial(&cells.concat());
-            values.into_iter().map(|value| 2.0 * value).collect()
+            as_parts(values.into_iter().map(|value| 2.0 * value).collect())
         };
         let plus = side([cell(a1, b1), cell(a0, b0)]);
         let minus = side([cell(a0, b1), cell(a1, b0)]);
@@ -247,7 +253,7 @@ impl Interaction {
             first: names(first, place[0]),
             second: names(second, place[1]),
             steps: step(&place).map(|step| Some(step).filter(|step| step.is_finite())),
-            difference: paired_difference(&minus, &plus),
+            difference: difference(estimator(design, figure), [&minus, &plus], true),
             p: tested.map(|tested| tested.p),
             p_adjusted: None,
             verdict: Dependence::NotComparable,
@@ -274,7 +280,7 @@ fn residuals([rows, columns]: [usize; 2], by_trial: impl Fn(usize, usize) -> Vec
             .map(|cell| {
                 let (row, column) = (cell / columns, cell % columns);
                 let left = value(row, column) - of_row(row) - of_column(column) + whole;
-                if left.abs() > 1e-9 * scale { left } else { 0.0 }
+                if left.abs() <= 1e-9 * scale { 0.0 } else { left }
             })
             .collect()
     };

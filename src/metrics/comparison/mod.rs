@@ -16,7 +16,6 @@ pub use setting::{Estimated, Setting, Survival};
 use serde::{Deserialize, Serialize};
 
 use super::figures::{Figure, Sample};
-use super::statistics::Resamples;
 use super::summary::Named;
 
 /// Below this, a p-value adjusted for the family shows a difference.
@@ -153,8 +152,9 @@ impl Comparison {
     /// Compares settings, all of which have the figures of `design`.
     #[must_use]
     pub fn of(design: &Design, trials: &[Trials], stopping: Option<Stopping>) -> Self {
-        let trials = restrict(trials);
-        let settings: Vec<Setting> = trials.iter().map(|trials| Setting::of(design, trials)).collect();
+        let restricted = restrict(trials);
+        let of_setting = |(trials, restricted)| Setting::of(design, trials, restricted);
+        let settings: Vec<Setting> = trials.iter().zip(&restricted).map(of_setting).collect();
         let key = |&figure: &usize| design.figures[figure].key.clone();
         let pareto = design.pareto.map(|axes| Pareto::of(design, axes, &settings));
         let family::Tests {
@@ -163,7 +163,7 @@ impl Comparison {
             effects,
             interactions,
             family,
-        } = family::Tests::of(design, &trials);
+        } = family::Tests::of(design, &restricted);
         Self {
             study: design.study.clone(),
             question: design.question.clone(),
@@ -224,7 +224,7 @@ fn restrict(trials: &[Trials]) -> Vec<Trials> {
     for figure in 0..figures {
         let limit = limit(trials, figure);
         let samples = restricted.iter_mut().flat_map(|trials| &mut trials.samples[figure]);
-        for sample in samples.filter(|sample| sample.part[1] > 0.0) {
+        for sample in samples.filter(|sample| sample.part[1] > 0.0 && sample.times.is_empty()) {
             sample.is_censored |= sample.part[0] > limit;
             sample.part[0] = sample.part[0].min(limit);
         }
@@ -235,17 +235,17 @@ fn restrict(trials: &[Trials]) -> Vec<Trials> {
 /// The shortest time that a trial was watched in vain; infinite where none was.
 fn limit(trials: &[Trials], figure: usize) -> f64 {
     let all = trials.iter().flat_map(|trials| &trials.samples[figure]);
-    let cut_off = all.filter(|sample| sample.is_censored).map(|sample| sample.part[0]);
+    let cut_off = all.filter(|sample| sample.is_censored && sample.times.is_empty());
+    let cut_off = cut_off.map(|sample| sample.part[0]);
     cut_off.fold(f64::INFINITY, f64::min)
 }
 
 /// The widest interval of a figure over the settings, for what would be compared so far; `None` where one has none.
 #[must_use]
-pub fn widest(trials: &[Trials], figure: usize) -> Option<f64> {
+pub fn widest(figure: &Figure, trials: &[Trials], place: usize) -> Option<f64> {
     let trials = restrict(trials);
     let mut widths = trials.iter().map(|trials| {
-        let samples = &trials.samples[figure];
-        let [low, high] = setting::estimate(samples, &Resamples::of(&[samples.len()])).ci95;
+        let [low, high] = figure.estimate(&trials.samples[place]).ci95;
         Some(high? - low?)
     });
     widths.try_fold(0.0, |widest: f64, width| Some(widest.max(width?)))
@@ -298,5 +298,7 @@ fn by_key<T>(figures: &[Figure], of: impl Fn(usize) -> T) -> Named<T> {
     Named::of(figures.iter().map(|figure| figure.key.as_str()), of)
 }
 
+#[cfg(test)]
+mod effect_tests;
 #[cfg(test)]
 mod tests;

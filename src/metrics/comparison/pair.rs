@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::setting::observations;
 use super::{Design, Trials, Verdict};
-use crate::metrics::figures::{Better, COMPLETION, Sample};
+use crate::metrics::figures::{Better, COMPLETION, Sample, parts};
 use crate::metrics::statistics::{
-    Estimate, POWER, Part, Resamples, Tested, cliffs_delta, least_of_ranks, log_rank, mann_whitney, paired_permutation,
-    ratio_of_sums, trials_needed, wilcoxon,
+    Estimate, POWER, Part, Tested, cliffs_delta_estimate, difference, least_of_ranks, log_rank, mann_whitney,
+    paired_permutation, ratio_of_sums, trials_needed, wilcoxon,
 };
 
 /// How a setting differs from another in one figure.
@@ -21,11 +21,11 @@ pub struct Pair {
     pub against: String,
     /// Whether trials are paired by their number; otherwise they are independent.
     pub paired: bool,
-    /// Its value less that of the other, with its BCa bootstrap interval. `n` is the number of pairs, or of the fewer trials.
+    /// Its value less that of the other, with its interval. `n` is the number of pairs, or of the fewer trials.
     pub difference: Estimate,
     /// The difference over the other's value.
     pub relative: Option<f64>,
-    /// Cliff's δ with its BCa bootstrap interval: 1 where every trial's value is above all of the other's, −1 where below.
+    /// Cliff's δ with its interval: 1 where every trial's value is above all of the other's, −1 where below.
     pub cliffs_delta: Estimate,
     /// Two-sided p-value: of the permutation test where paired, else Mann and Whitney's.
     pub p: Option<f64>,
@@ -106,10 +106,10 @@ impl Pair {
             samples = samples.map(|samples| &samples[..both]);
         }
         let [a, b] = samples;
-        let parts = samples.map(|samples| samples.iter().map(|sample| sample.part).collect::<Vec<Part>>());
-        let resamples = Resamples::of(&if paired { vec![a.len()] } else { vec![a.len(), b.len()] });
+        let parts = samples.map(parts);
+        let values = [a, b].map(|samples| samples.iter().map(Sample::value).collect::<Vec<_>>());
         let base = ratio_of_sums(parts[0].iter().copied());
-        let difference = difference(&parts, &resamples);
+        let difference = difference(design.figures[figure].estimator, [&parts[0], &parts[1]], paired);
         let permuted = paired
             .then(|| paired_permutation(&[parts.each_ref().map(Vec::as_slice)], family))
             .flatten();
@@ -131,7 +131,7 @@ impl Pair {
                 .map(|value| value / base.abs())
                 .filter(|share| share.is_finite()),
             difference,
-            cliffs_delta: delta(samples, &resamples),
+            cliffs_delta: cliffs_delta_estimate([&values[0], &values[1]], paired),
             p: tested.map(|tested| tested.p),
             p_adjusted: None,
             tests,
@@ -149,42 +149,6 @@ pub(super) fn differ(trials: &[Trials], figure: usize, [a, b]: [usize; 2]) -> bo
     let [a, b] = [&trials[a], &trials[b]].map(|trials| &trials.samples[figure]);
     let same = |(a, b): (&Sample, &Sample)| a.part.iter().zip(b.part).all(|(a, b)| super::apart(*a, b) == 0.0);
     a.len() != b.len() || !a.iter().zip(b).all(same)
-}
-
-/// The choice of trials in each of two groups, from the resample of one group of pairs or of two groups.
-fn both(chosen: &[Vec<usize>]) -> [&[usize]; 2] {
-    let last = chosen.len() - 1;
-    [&chosen[0], &chosen[last]]
-}
-
-fn difference(parts: &[Vec<Part>; 2], resamples: &Resamples) -> Estimate {
-    let [a, b] = parts.each_ref().map(|parts| ratio_of_sums(parts.iter().copied()));
-    let of = |group: usize, chosen: &[usize]| ratio_of_sums(chosen.iter().map(|&trial| parts[group][trial]));
-    Estimate {
-        value: Some(b - a).filter(|value| value.is_finite()),
-        ci95: resamples.interval(|chosen| {
-            let [first, second] = both(chosen);
-            of(1, second) - of(0, first)
-        }),
-        n: parts[0].len().min(parts[1].len()) as u64,
-    }
-}
-
-fn delta(samples: [&[Sample]; 2], resamples: &Resamples) -> Estimate {
-    let of = |chosen: [&mut dyn Iterator<Item = usize>; 2]| {
-        let [a, b] = chosen;
-        let a: Vec<f64> = a.filter_map(|trial| samples[0][trial].value()).collect();
-        let b: Vec<f64> = b.filter_map(|trial| samples[1][trial].value()).collect();
-        cliffs_delta(&a, &b)
-    };
-    Estimate {
-        value: of([&mut (0..samples[0].len()), &mut (0..samples[1].len())]),
-        ci95: resamples.interval(|chosen| {
-            let [first, second] = both(chosen);
-            of([&mut first.iter().copied(), &mut second.iter().copied()]).unwrap_or(f64::NAN)
-        }),
-        n: samples[0].len().min(samples[1].len()) as u64,
-    }
 }
 
 impl Tests {

@@ -3,10 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Design, Trials, by_key};
-use crate::metrics::figures::Sample;
-use crate::metrics::statistics::{
-    Estimate, Observation, Resamples, Step, median_survival, quantile, ratio_of_sums, survival_curve,
-};
+use crate::metrics::figures::{COMPLETION, Sample};
+use crate::metrics::statistics::{Estimate, Observation, Step, median, median_survival, survival_curve};
 use crate::metrics::summary::Named;
 
 /// What the trials of one setting tell.
@@ -29,11 +27,10 @@ pub struct Setting {
 /// A figure of a setting.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimated {
-    /// The mean over trials, or the ratio of sums over trials, with its BCa bootstrap interval; of what may be cut off, the
-    /// restricted mean.
+    /// The mean over trials, or the ratio of sums over trials, as in `summary.json`; of what may be cut off, the restricted mean.
     #[serde(flatten)]
     pub estimate: Estimate,
-    /// The median over trials with its BCa bootstrap interval; absent for ratios of sums.
+    /// The median over trials, between order statistics; absent for ratios of sums.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub median: Option<Estimate>,
     /// How it came about over time, for what may be cut off.
@@ -53,16 +50,16 @@ pub struct Survival {
 }
 
 impl Setting {
-    pub(super) fn of(design: &Design, trials: &Trials) -> Self {
+    /// Of `trials`, whose times were `restricted` to what all settings were watched for.
+    pub(super) fn of(design: &Design, trials: &Trials, restricted: &Trials) -> Self {
         let count = trials.samples.first().map_or(0, Vec::len);
-        let resamples = Resamples::of(&[count]);
-        let estimated = |figure: usize| {
-            let samples = &trials.samples[figure];
+        let estimated = |place: usize| {
+            let (figure, samples) = (&design.figures[place], &restricted.samples[place]);
+            let values = || samples.iter().filter_map(Sample::value).collect::<Vec<f64>>();
             Estimated {
-                estimate: estimate(samples, &resamples),
-                median: (!design.figures[figure].is_ratio).then(|| median(samples, &resamples)),
-                survival: (design.figures[figure].key == crate::metrics::figures::COMPLETION)
-                    .then(|| Survival::of(samples)),
+                estimate: figure.estimate(samples),
+                median: (!figure.is_ratio).then(|| median(&values())),
+                survival: (figure.key == COMPLETION).then(|| Survival::of(&trials.samples[place])),
             }
         };
         Self {
@@ -83,36 +80,6 @@ impl Setting {
             .iter()
             .find(|(name, _)| name == key)
             .map(|(_, figure)| figure)
-    }
-}
-
-/// Trials that tell something.
-fn telling(samples: &[Sample]) -> u64 {
-    let tells = |sample: &&Sample| sample.part.iter().any(|part| part.abs() > 0.0);
-    samples.iter().filter(tells).count() as u64
-}
-
-/// The ratio of sums with its interval.
-pub(super) fn estimate(samples: &[Sample], resamples: &Resamples) -> Estimate {
-    let of = |chosen: &[usize]| ratio_of_sums(chosen.iter().map(|&trial| samples[trial].part));
-    let value = ratio_of_sums(samples.iter().map(|sample| sample.part));
-    Estimate {
-        value: value.is_finite().then_some(value),
-        ci95: resamples.interval(|chosen| of(&chosen[0])),
-        n: telling(samples),
-    }
-}
-
-fn median(samples: &[Sample], resamples: &Resamples) -> Estimate {
-    let of = |chosen: &mut dyn Iterator<Item = usize>| {
-        let mut values: Vec<f64> = chosen.filter_map(|trial| samples[trial].value()).collect();
-        values.sort_by(f64::total_cmp);
-        quantile(&values, 0.5)
-    };
-    Estimate {
-        value: of(&mut (0..samples.len())),
-        ci95: resamples.interval(|chosen| of(&mut chosen[0].iter().copied()).unwrap_or(f64::NAN)),
-        n: telling(samples),
     }
 }
 

@@ -1,28 +1,44 @@
 //! Estimates over trials, each with its 95 % interval.
 //!
-//! Reference figures in the tests come from numpy, scipy and lifelines; the calls stand beside them.
+//! Every estimate is a number to which each trial adds something, to first order: its *term*. A mean is one, a ratio of sums, and
+//! the mean of times of which some were cut off. The terms tell how sure the estimate is; what values the figure can take tells how
+//! its interval is shaped ([`Estimator`]). How often the intervals hold the truth is simulated by the tests of `coverage`; the
+//! table is docs/coverage.md.
+//!
+//! Reference figures in the tests come from numpy, scipy, R and lifelines; the calls stand beside them.
 
-mod bootstrap;
+#[cfg(test)]
+mod coverage;
+mod difference;
+mod estimator;
 mod family;
-mod location;
+mod interval;
+mod median;
 mod permutation;
 mod ranks;
 mod spread;
 mod survival;
+mod terms;
+mod times;
 
-pub use bootstrap::Resamples;
+pub use difference::difference;
+pub use estimator::{Estimator, mean, proportion};
 pub use family::{POWER, fewest_trials, holm, testable, trials_needed};
-pub use location::{mean, median, proportion, ratio, share};
+pub use median::median;
 pub use permutation::{Part, Tested, least_of_pairs, paired_permutation, ratio_of_sums, sign_permutation};
-pub use ranks::{cliffs_delta, least_of_groups, least_of_ranks, mann_whitney, wilcoxon};
+pub use ranks::{cliffs_delta, cliffs_delta_estimate, least_of_groups, least_of_ranks, mann_whitney, wilcoxon};
 pub use spread::{gini, quantile};
 pub use survival::{Observation, Step, log_rank, median_survival, survival_curve};
+pub use times::{Lasting, pseudo_values};
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Probability that an interval leaves out on either side.
 const TAIL: f64 = 0.025;
+
+/// Trials from which the median has an interval that holds it with at least 95 %: of fewer, the outermost two do not.
+const FEWEST_FOR_MEDIAN: usize = 6;
 
 /// Lower and upper end of a 95 % interval, each absent where the trials cannot tell it.
 pub type Ci95 = [Option<f64>; 2];

@@ -44,10 +44,6 @@ pub fn ratio_of_sums(parts: impl IntoIterator<Item = Part>) -> f64 {
 /// for, or until enough were as large (Besag and Clifford, 1991). `None` without a finite difference.
 #[must_use]
 pub fn paired_permutation(strata: &[[&[Part]; 2]], tests: usize) -> Option<Tested> {
-    let observed = mean_difference(strata, |[a, b]| [total(a), total(b)]);
-    if !observed.is_finite() {
-        return None;
-    }
     let trials = strata.iter().map(|[a, b]| a.len().min(b.len())).min().unwrap_or(0);
     // To swap equals changes nothing: each such trial would only double all counts.
     let differs = |&trial: &usize| strata.iter().any(|[a, b]| !are_equal(a[trial], b[trial]));
@@ -56,9 +52,9 @@ pub fn paired_permutation(strata: &[[&[Part]; 2]], tests: usize) -> Option<Teste
         .iter()
         .map(|[a, _]| total_of(equal.iter().map(|&trial| a[trial])))
         .collect();
-    let is_as_large = |swapped: &dyn Fn(usize) -> bool| {
+    let difference = |swapped: &dyn Fn(usize) -> bool| {
         let mut place = 0;
-        let difference = mean_difference(strata, |[a, b]| {
+        mean_difference(strata, |[a, b]| {
             let mut sums = [start[place]; 2];
             place += 1;
             for (pair, &trial) in moving.iter().enumerate() {
@@ -69,7 +65,14 @@ pub fn paired_permutation(strata: &[[&[Part]; 2]], tests: usize) -> Option<Teste
                 }
             }
             sums
-        });
+        })
+    };
+    let observed = difference(&|_| false);
+    if !observed.is_finite() {
+        return None;
+    }
+    let is_as_large = |swapped: &dyn Fn(usize) -> bool| {
+        let difference = difference(swapped);
         // Rounding must not make the same difference a smaller one; a difference without bounds counts as large.
         difference.is_nan() || difference.abs() >= observed.abs() * (1.0 - 1e-9)
     };
@@ -148,10 +151,6 @@ fn are_equal(a: Part, b: Part) -> bool {
     a.iter()
         .zip(b)
         .all(|(a, b)| (a - b).abs() <= 1e-12 * a.abs().max(b.abs()))
-}
-
-fn total(parts: &[Part]) -> Part {
-    total_of(parts.iter().copied())
 }
 
 fn total_of(parts: impl Iterator<Item = Part>) -> Part {

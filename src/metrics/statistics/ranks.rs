@@ -2,6 +2,10 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
+use super::Estimate;
+use super::interval::share_at;
+use super::terms::{Moments, Terms, summed};
+
 /// Up to so many values the exact distribution is counted out, as long as no two are equal.
 const EXACT: usize = 50;
 
@@ -94,6 +98,40 @@ pub fn cliffs_delta(a: &[f64], b: &[f64]) -> Option<f64> {
     };
     let sum: f64 = b.iter().map(|&value| over(value)).sum();
     (!a.is_empty() && !b.is_empty()).then(|| sum / (a.len() * b.len()) as f64)
+}
+
+/// Cliff's δ of two samples, `None` where a trial has no value, with an interval: of the share of pairs in which the second is larger, ties
+/// by half, Wilson's at the effective number of trials, so that it stays within −1 and 1 and has a width there too. What each
+/// trial adds to it is how its values stand among all of the other sample (Cliff, 1996; paired trials add both).
+#[must_use]
+pub fn cliffs_delta_estimate(samples: [&[Option<f64>]; 2], pairs: bool) -> Estimate {
+    let values = samples.map(|sample| sample.iter().copied().flatten().collect::<Vec<f64>>());
+    let n = values[0].len().min(values[1].len()) as u64;
+    let Some(delta) = cliffs_delta(&values[0], &values[1]) else {
+        return Estimate {
+            n,
+            ..Estimate::default()
+        };
+    };
+    let share = f64::midpoint(delta, 1.0);
+    let terms = |own: usize, other: usize, sign: f64| -> Terms {
+        let size = values[own].len() as f64;
+        let among = |value: f64| sign * cliffs_delta(&values[other], &[value]).unwrap_or(0.0);
+        let term = |value: &Option<f64>| value.map(|value| (among(value) - delta) / 2.0 / size);
+        samples[own].iter().map(term).collect()
+    };
+    let (first, second) = (terms(0, 1, -1.0), terms(1, 0, 1.0));
+    let moments = if pairs {
+        Moments::of(&summed(&first, &second))
+    } else {
+        Moments::of(&first).and_then(|first| Some(Moments::between(first, Moments::of(&second)?)))
+    };
+    let interval = moments.and_then(|moments| share_at(share, moments));
+    Estimate {
+        value: Some(delta),
+        ci95: interval.map_or([None; 2], |ends| ends.map(|end| Some(2.0 * end - 1.0))),
+        n,
+    }
 }
 
 /// Ranks from 1, the mean rank for equal values, and the sum of t³ − t over groups of t equal values.

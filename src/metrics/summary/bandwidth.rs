@@ -1,11 +1,12 @@
-//! What robots send and receive. A robot's bandwidth in a trial is its bytes over the trial's control steps, in all of
-//! which it counts: topics and roles thus add up to the whole.
+//! What robots send and receive. A robot's bandwidth in a trial is its bytes over its control steps that were due in the trial, in all of
+//! which it counts, also while it was down: topics and roles thus add up to the whole.
 
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::record::{TrafficRow, TrialRecord, Volume};
-use crate::metrics::statistics::{Estimate, gini, mean, quantile};
+use crate::metrics::statistics::{Estimate, mean, quantile};
 
+use super::Figures;
 use super::quantity::{DIMENSIONLESS, Named, Quantity, Unit};
 
 /// Bandwidth of robots.
@@ -143,17 +144,10 @@ impl Spread {
 }
 
 impl LoadImbalance {
-    pub(super) fn of(records: &[TrialRecord]) -> Self {
-        let over_trials = |bytes: fn(&TrafficRow) -> u64| {
-            let trials: Vec<f64> = records
-                .iter()
-                .filter_map(|record| gini(&record.bytes_per_step(bytes)))
-                .collect();
-            mean(&trials)
-        };
+    pub(super) fn of(figures: &Figures) -> Self {
         Self {
-            tx: over_trials(|row| row.sent.bytes()),
-            rx: over_trials(|row| row.received.bytes()),
+            tx: figures.estimate("load_imbalance.tx"),
+            rx: figures.estimate("load_imbalance.rx"),
             unit: DIMENSIONLESS.into(),
         }
     }

@@ -3,16 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Suspicion, Verdict};
-use crate::metrics::record::TrialRecord;
-use crate::metrics::statistics::{Estimate, ratio};
+use crate::metrics::statistics::Observation;
 
-use super::quantity::{DIMENSIONLESS, Measured, Named, Quantity, Unit};
+use super::Figures;
+use super::quantity::{DIMENSIONLESS, Lasted, Measured, Named, Quantity, Unit};
 
 const SUSPICIONS: &str = "suspicions";
 const SECONDS: &str = "s";
 
 /// Failure detection over all trials; [`crate::metrics::detection`] defines the figures. Estimates are ratios of sums over
-/// trials, so that a trial without a mistake counts with the time that it was watched.
+/// trials, so that a trial without a mistake counts with the time that it was watched. What was cut off is neither left out nor
+/// taken for over: see [`Lasted`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Detection {
     /// Suspicions, by cause and by verdict.
@@ -21,12 +22,12 @@ pub struct Detection {
     pub mistakes: Quantity<u64>,
     /// Failures of robots, once for each observer that monitored the robot then.
     pub failures: Failures,
-    /// T_D, of the failures that were detected.
-    pub detection_time_s: Measured,
+    /// T_D; failures that ended, or whose observer or run did, before they were detected are cut off.
+    pub detection_time_s: Lasted,
     /// T_MR, monitored time over mistakes.
     pub mistake_recurrence_s: Measured,
-    /// T_M, of the mistakes that ended in trust.
-    pub mistake_duration_s: Measured,
+    /// T_M; mistakes that did not end in trust are cut off.
+    pub mistake_duration_s: Lasted,
     /// λ_M, mistakes over monitored time: of one pair.
     pub mistake_rate_hz: Measured,
     /// P_A, the share of the monitored time not spent in a mistake.
@@ -66,16 +67,8 @@ pub struct Failures {
 }
 
 impl Detection {
-    pub(super) fn of(records: &[TrialRecord]) -> Self {
-        let trials: Vec<&DetectionRecord> = records.iter().map(|record| &record.detection).collect();
-        let over_trials = |parts: fn(&DetectionRecord) -> [f64; 2]| {
-            let parts: Vec<[f64; 2]> = trials.iter().map(|trial| parts(trial)).collect();
-            ratio(&parts)
-        };
-        let of = |estimate: Estimate, unit: &'static str| Measured {
-            estimate,
-            unit: unit.into(),
-        };
+    pub(super) fn of(figures: &Figures) -> Self {
+        let trials: Vec<&DetectionRecord> = figures.records.iter().map(|record| &record.detection).collect();
         Self {
             suspicions: Suspicions::of(&trials),
             mistakes: Quantity {
@@ -83,20 +76,11 @@ impl Detection {
                 unit: SUSPICIONS.into(),
             },
             failures: Failures::of(&trials),
-            detection_time_s: of(over_trials(detection_times), SECONDS),
-            mistake_recurrence_s: of(
-                over_trials(|trial| [trial.monitored_s, mistakes(trial).count() as f64]),
-                SECONDS,
-            ),
-            mistake_duration_s: of(over_trials(durations), SECONDS),
-            mistake_rate_hz: of(
-                over_trials(|trial| [mistakes(trial).count() as f64, trial.monitored_s]),
-                "Hz",
-            ),
-            query_accuracy: of(
-                complement(over_trials(|trial| [trial.mistaken_s, trial.monitored_s])),
-                DIMENSIONLESS,
-            ),
+            detection_time_s: figures.lasted("detection.detection_time_s"),
+            mistake_recurrence_s: figures.measured("detection.mistake_recurrence_s", SECONDS),
+            mistake_duration_s: figures.lasted("detection.mistake_duration_s"),
+            mistake_rate_hz: figures.measured("detection.mistake_rate_hz", "Hz"),
+            query_accuracy: figures.measured("detection.query_accuracy", DIMENSIONLESS),
             monitored_s: Quantity {
                 value: trials.iter().map(|trial| trial.monitored_s).sum(),
                 unit: SECONDS.into(),
@@ -113,31 +97,26 @@ pub(in crate::metrics) fn mistakes(trial: &DetectionRecord) -> impl Iterator<Ite
         .filter(|suspicion| suspicion.verdict() == Verdict::Mistake)
 }
 
-/// The sum of the detection times, and how many there are.
-pub(in crate::metrics) fn detection_times(trial: &DetectionRecord) -> [f64; 2] {
-    let times = trial.failures.iter().filter_map(|failure| match failure.outcome {
-        FailureOutcome::Detected(after) => Some(after.as_secs()),
-        FailureOutcome::Recovered | FailureOutcome::ObserverFailed | FailureOutcome::Undetected => None,
+/// How long each failure was watched until it was detected, or cut off.
+#[must_use]
+pub fn detection_times(trial: &DetectionRecord) -> Vec<Observation> {
+    let seen = trial.failures.iter().map(|failure| Observation {
+        time: failure.watched.as_secs(),
+        happened: matches!(failure.outcome, FailureOutcome::Detected(_)),
     });
-    times.fold([0.0, 0.0], |[sum, count], time| [sum + time, count + 1.0])
+    seen.collect()
 }
 
-/// The sum of the mistakes' durations, and how many there are.
-pub(in crate::metrics) fn durations(trial: &DetectionRecord) -> [f64; 2] {
-    let durations = trial.suspicions.iter().filter_map(|suspicion| suspicion.duration);
-    durations.fold([0.0, 0.0], |[sum, count], duration| {
-        [sum + duration.as_secs(), count + 1.0]
-    })
-}
-
-/// One less a share, with its interval.
-fn complement(share: Estimate) -> Estimate {
-    let [low, high] = share.ci95.map(|end| end.map(|end| (1.0 - end).max(0.0)));
-    Estimate {
-        value: share.value.map(|value| 1.0 - value),
-        ci95: [high, low],
-        n: share.n,
-    }
+/// How long each mistake lasted until trust, or until it was cut off.
+#[must_use]
+pub fn mistake_durations(trial: &DetectionRecord) -> Vec<Observation> {
+    let durations = trial.suspicions.iter().filter_map(|suspicion| {
+        Some(Observation {
+            time: suspicion.duration?.as_secs(),
+            happened: !suspicion.cut_off,
+        })
+    });
+    durations.collect()
 }
 
 impl Suspicions {

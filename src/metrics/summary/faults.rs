@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::SimTime;
 use crate::metrics::record::{FaultKind, HealingEpisode, TrialRecord};
-use crate::metrics::statistics::{Estimate, Observation, mean, median_survival};
+use crate::metrics::statistics::{Estimate, Estimator, Observation, Part, median_survival, pseudo_values};
 
-use super::quantity::{Measured, Named, Unit};
-use super::{SECONDS, mean_over_trials};
+use super::quantity::{Lasted, Measured, Named, Unit};
+use super::{SECONDS, mean_count};
 
 /// What failed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,7 +35,8 @@ pub struct HealingSummary {
     pub by_overlap: Named<Healed>,
 }
 
-/// Harm and its mending, an observation a failure. Intervals take failures as independent, also those of one trial.
+/// Harm and its mending. Means are over failures, their intervals over trials; that of the median takes failures as independent, also
+/// those of one trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Healed {
     /// Failures that did harm.
@@ -44,7 +45,7 @@ pub struct Healed {
     pub healed: u64,
     /// From the failure until its harm was mended.
     pub time: HealingTime,
-    /// Way of the robots of the target's chains meanwhile, mean over mended failures.
+    /// Way of the robots of the target's chains meanwhile, mean over mended failures; what the end cut off is not among them.
     pub distance: Measured,
     /// Frames that robots of the target's chains sent meanwhile, by topic, mean over mended failures.
     pub frames: Named<Measured>,
@@ -55,6 +56,8 @@ pub struct Healed {
 pub struct HealingTime {
     /// Kaplan–Meier median; harm that was not mended by the end of its trial is censored. `n` counts failures.
     pub median: Estimate,
+    /// The mean, what was not mended counted as cut off.
+    pub mean: Lasted,
     /// Always `"s"`.
     pub unit: Unit,
 }
@@ -77,7 +80,7 @@ impl FaultSummary {
             .count() as u64;
         records.iter().any(|record| !record.faults.is_empty()).then(|| Self {
             robots: Measured {
-                estimate: mean_over_trials(records, |record| Some(record.failed_robots().len() as f64)),
+                estimate: mean_count(records, |record| record.failed_robots().len() as f64),
                 unit: "robots".into(),
             },
             by_role: Named::of(roles.iter().copied(), failures_of),
@@ -91,15 +94,20 @@ type Case<'a> = (&'a HealingEpisode, SimTime);
 
 impl HealingSummary {
     /// How targets healed in `records`, by these names; `None` if no robot failed that worked for a target.
-    pub(super) fn of(topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Option<Self> {
+    pub(super) fn of<'a>(topics: &[&str], roles: &[&str], records: &'a [TrialRecord]) -> Option<Self> {
         let cases = || {
             records
                 .iter()
                 .flat_map(|record| record.healing.iter().map(|episode| (episode, record.simulated)))
         };
         let harmful = |belongs: &dyn Fn(&HealingEpisode) -> bool| {
-            let chosen = cases().filter(|(episode, _)| episode.is_harmful() && belongs(episode));
-            Healed::of(topics, &chosen.collect::<Vec<_>>())
+            let of_trial = |record: &'a TrialRecord| -> Vec<Case> {
+                let episodes = record.healing.iter().map(|episode| (episode, record.simulated));
+                episodes
+                    .filter(|(episode, _)| episode.is_harmful() && belongs(episode))
+                    .collect()
+            };
+            Healed::of(topics, &records.iter().map(of_trial).collect::<Vec<_>>())
         };
         cases().next()?;
         Some(Self {
@@ -124,18 +132,35 @@ pub(in crate::metrics) fn mending(episode: &HealingEpisode, end: SimTime) -> Obs
 }
 
 impl Healed {
-    fn of(topics: &[&str], cases: &[Case]) -> Self {
-        let observations: Vec<Observation> = cases.iter().map(|(episode, end)| mending(episode, *end)).collect();
-        let mended = || cases.iter().filter(|(episode, _)| episode.healed_at.is_some());
+    fn of(topics: &[&str], trials: &[Vec<Case>]) -> Self {
+        let times: Vec<Vec<Observation>> = trials
+            .iter()
+            .map(|cases| cases.iter().map(|(episode, end)| mending(episode, *end)).collect())
+            .collect();
+        let observations = times.concat();
+        let of_trial = |cases: &Vec<Case>, figure: &dyn Fn(&HealingEpisode) -> f64| -> Part {
+            let mended = cases.iter().filter(|(episode, _)| episode.healed_at.is_some());
+            mended.fold([0.0; 2], |[sum, count], (episode, _)| {
+                [sum + figure(episode), count + 1.0]
+            })
+        };
         let measured = |figure: &dyn Fn(&HealingEpisode) -> f64, unit: &'static str| Measured {
-            estimate: mean(&mended().map(|(episode, _)| figure(episode)).collect::<Vec<_>>()),
+            estimate: Estimator::Count
+                .estimate(&trials.iter().map(|cases| of_trial(cases, figure)).collect::<Vec<_>>()),
             unit: unit.into(),
         };
+        let (parts, lasting) = pseudo_values(&times.iter().map(Vec::as_slice).collect::<Vec<_>>());
         Self {
-            failures: cases.len() as u64,
-            healed: mended().count() as u64,
+            failures: observations.len() as u64,
+            healed: observations.iter().filter(|seen| seen.happened).count() as u64,
             time: HealingTime {
                 median: median_survival(&observations),
+                mean: Lasted {
+                    estimate: Estimator::Times.estimate(&parts),
+                    cut_off: lasting.cut_off,
+                    restricted_to: lasting.restricted_to,
+                    unit: SECONDS.into(),
+                },
                 unit: SECONDS.into(),
             },
             distance: measured(&|episode| episode.distance_m, "m"),

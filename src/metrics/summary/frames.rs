@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::record::{TopicFates, TrialRecord};
+use crate::metrics::statistics::Part;
 use crate::radio::LossCause;
 
 use super::quantity::{Named, Unit};
@@ -57,10 +58,17 @@ impl Fates {
     }
 }
 
-/// Delivered copies over offered ones in one trial, those in flight at its end among the offered; `None` if nothing
-/// was offered.
-pub(in crate::metrics) fn delivery_ratio(record: &TrialRecord) -> Option<f64> {
+/// Copies of one trial that are delivered, and those offered. What is under way at the end has not been lost so far: it counts as
+/// delivered in the share of those that came as far as their receiver and were heard there. So copies under way bias nothing.
+pub(in crate::metrics) fn delivery(record: &TrialRecord) -> Part {
     let mut sum = TopicFates::default();
     record.ledger.iter().for_each(|fates| sum.add(fates));
-    (sum.offered > 0).then(|| sum.delivered as f64 / sum.offered as f64)
+    let unheard = sum.lost[LossCause::ReceiverDown as usize];
+    let arrived = (sum.delivered + unheard) as f64;
+    let heard = if unheard > 0 {
+        sum.delivered as f64 / arrived
+    } else {
+        1.0
+    };
+    [sum.delivered as f64 + sum.in_flight as f64 * heard, sum.offered as f64]
 }

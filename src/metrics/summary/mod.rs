@@ -6,14 +6,16 @@ pub(super) mod bandwidth;
 pub(super) mod detection;
 pub(super) mod faults;
 pub(super) mod frames;
+mod missed;
 mod quantity;
 pub(super) mod spread;
 
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
-pub use detection::{Detection, Failures, Suspicions};
+pub use detection::{Detection, Failures, Suspicions, detection_times, mistake_durations};
 pub use faults::{FaultSummary, Healed, HealingSummary, HealingTime};
 pub use frames::{Fates, Frames};
-pub use quantity::{Measured, Named, Quantity, Unit};
+pub use missed::{MissedSummary, MissedTarget};
+pub use quantity::{Lasted, Measured, Named, Quantity, Unit};
 pub use spread::{Duplicates, SpreadSummary, SpreadTime};
 
 use serde::{Deserialize, Serialize};
@@ -21,9 +23,10 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::engine::Span;
 
+use super::figures::Registry;
 use super::latency::LatencyHistogram;
 use super::record::{Outcome, TrialRecord};
-use super::statistics::{Estimate, Observation, mean, median, median_survival, proportion, share};
+use super::statistics::{Estimate, Estimator, Observation, median, median_survival};
 pub(super) use quantity::DIMENSIONLESS;
 
 pub(super) const STEPS: &str = "control steps";
@@ -44,11 +47,15 @@ pub struct Summary {
     pub completion_ratio: Measured,
     /// Steps to completion, trials that did not complete counted as censored.
     pub steps_to_completion: StepsToCompletion,
+    /// Why missions failed; absent if none did, or nothing was sampled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missed: Option<MissedSummary>,
     /// Frames by fate.
     pub frames: Frames,
-    /// Copies delivered over copies offered: mean over trials.
+    /// Share of the copies offered that were delivered, or will be: copies under way at the end are lost as far as they have been, and
+    /// no further.
     pub delivery_ratio: Measured,
-    /// Latency of delivered frames.
+    /// Latency of copies, whether they arrived before the end or were under way.
     pub latency_s: Latency,
     /// Bytes that robots send and receive.
     pub bandwidth: Bandwidth,
@@ -69,9 +76,8 @@ pub struct Summary {
     /// How rumours spread; absent where there were none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spread: Option<SpreadSummary>,
-    /// What was heard in vain; absent where the protocol names nothing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub duplicates: Option<Duplicates>,
+    /// What was heard in vain.
+    pub duplicates: Duplicates,
     /// Failure detection, against the truth.
     pub detection: Detection,
     /// Control steps simulated, over all trials.
@@ -89,14 +95,15 @@ pub struct StepsToCompletion {
     pub unit: Unit,
 }
 
-/// Time from the start of a transmission to its arrival; absent when nothing arrived.
+/// Time from the start of a transmission to its arrival, also where that comes after the end: to leave long ones out would flatter.
+/// Absent where nothing was on its way.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Latency {
-    /// Median over all delivered frames, within 1/256.
+    /// Median over all copies, within 1/256.
     pub p50: Option<f64>,
-    /// 95th percentile over all delivered frames, within 1/256.
+    /// 95th percentile over all copies, within 1/256.
     pub p95: Option<f64>,
-    /// 99th percentile over all delivered frames, within 1/256.
+    /// 99th percentile over all copies, within 1/256.
     pub p99: Option<f64>,
     /// Mean over trials of each trial's mean.
     pub mean: Estimate,
@@ -107,9 +114,11 @@ pub struct Latency {
 /// The least λ₂ of each trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeastConnectivity {
-    /// Median over trials.
+    /// Mean over trials.
     #[serde(flatten)]
     pub estimate: Estimate,
+    /// Median over trials.
+    pub median: Estimate,
     /// Least over trials.
     pub min: Option<f64>,
     /// Always `"1"`.
@@ -125,33 +134,32 @@ impl Summary {
             .iter()
             .filter(|record| matches!(record.outcome, Outcome::Completed { .. }))
             .count() as u64;
-        let with_mission = records
-            .iter()
-            .filter(|record| record.outcome != Outcome::NoMission)
-            .count() as u64;
+        let registry = Registry::of(topics);
+        let figures = &Figures {
+            registry: &registry,
+            records,
+        };
         Self {
             scenario: scenario.to_owned(),
             trials: records.len() as u64,
             completed,
             digest: digest(records),
-            completion_ratio: ratio(proportion(completed, with_mission)),
+            completion_ratio: figures.measured("completion_ratio", DIMENSIONLESS),
             steps_to_completion: StepsToCompletion::of(records),
+            missed: MissedSummary::of(records),
             frames: Frames::of(topics, records),
-            delivery_ratio: ratio(mean_over_trials(records, frames::delivery_ratio)),
-            latency_s: Latency::of(records),
+            delivery_ratio: figures.measured("delivery_ratio", DIMENSIONLESS),
+            latency_s: Latency::of(figures),
             bandwidth: Bandwidth::of(topics, roles, records),
-            load_imbalance: LoadImbalance::of(records),
-            lambda2_min: LeastConnectivity::of(records),
-            connected_share: ratio(connected_share(records)),
-            robots_used: Measured {
-                estimate: mean_over_trials(records, |record| record.robots_used().map(|robots| robots as f64)),
-                unit: "robots".into(),
-            },
+            load_imbalance: LoadImbalance::of(figures),
+            lambda2_min: LeastConnectivity::of(figures),
+            connected_share: figures.measured("connected_share", DIMENSIONLESS),
+            robots_used: figures.measured("robots_used", "robots"),
             faults: FaultSummary::of(roles, records),
             healing: HealingSummary::of(topics, roles, records),
-            spread: SpreadSummary::of(records),
-            duplicates: Duplicates::of(topics, records),
-            detection: Detection::of(records),
+            spread: SpreadSummary::of(figures),
+            duplicates: Duplicates::of(topics, figures),
+            detection: Detection::of(figures),
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
                 unit: STEPS.into(),
@@ -164,21 +172,38 @@ impl Summary {
     }
 }
 
-fn ratio(estimate: Estimate) -> Measured {
-    Measured {
-        estimate,
-        unit: DIMENSIONLESS.into(),
+/// The figures of a protocol over the trials to be summarised: the ones that comparisons show.
+struct Figures<'a> {
+    registry: &'a Registry,
+    records: &'a [TrialRecord],
+}
+
+impl Figures<'_> {
+    fn estimate(&self, key: &str) -> Estimate {
+        self.registry.estimate(key, self.records).0
+    }
+
+    fn measured(&self, key: &str, unit: &'static str) -> Measured {
+        Measured {
+            estimate: self.estimate(key),
+            unit: unit.into(),
+        }
+    }
+
+    fn lasted(&self, key: &str) -> Lasted {
+        let (estimate, lasting) = self.registry.estimate(key, self.records);
+        Lasted {
+            estimate,
+            cut_off: lasting.cut_off,
+            restricted_to: lasting.restricted_to,
+            unit: SECONDS.into(),
+        }
     }
 }
 
-/// The mean of a figure over the trials that have it.
-fn mean_over_trials(records: &[TrialRecord], figure: impl Fn(&TrialRecord) -> Option<f64>) -> Estimate {
-    mean(&records.iter().filter_map(figure).collect::<Vec<f64>>())
-}
-
-fn connected_share(records: &[TrialRecord]) -> Estimate {
-    let shares: Vec<f64> = records.iter().filter_map(TrialRecord::connected_share).collect();
-    share(&shares)
+/// The mean of whole numbers over trials.
+fn mean_count(records: &[TrialRecord], count: impl Fn(&TrialRecord) -> f64) -> Estimate {
+    Estimator::Count.estimate(&records.iter().map(|record| [count(record), 1.0]).collect::<Vec<_>>())
 }
 
 /// XXH3-128 of the trials' digests, each as 16 bytes, least significant first.
@@ -211,9 +236,9 @@ impl StepsToCompletion {
 }
 
 impl Latency {
-    fn of(records: &[TrialRecord]) -> Self {
+    fn of(figures: &Figures) -> Self {
         let mut all = LatencyHistogram::default();
-        for record in records {
+        for record in figures.records {
             all.merge(&record.latency);
         }
         let quantile = |q| all.quantile(q).map(Span::as_secs);
@@ -221,17 +246,18 @@ impl Latency {
             p50: quantile(0.5),
             p95: quantile(0.95),
             p99: quantile(0.99),
-            mean: mean_over_trials(records, |record| record.latency.mean_secs()),
+            mean: figures.estimate("latency_s.mean"),
             unit: SECONDS.into(),
         }
     }
 }
 
 impl LeastConnectivity {
-    fn of(records: &[TrialRecord]) -> Self {
-        let minima: Vec<f64> = records.iter().filter_map(TrialRecord::lambda2_min).collect();
+    fn of(figures: &Figures) -> Self {
+        let minima: Vec<f64> = figures.records.iter().filter_map(TrialRecord::lambda2_min).collect();
         Self {
-            estimate: median(&minima),
+            estimate: figures.estimate("lambda2_min"),
+            median: median(&minima),
             min: minima.iter().copied().min_by(f64::total_cmp),
             unit: DIMENSIONLESS.into(),
         }

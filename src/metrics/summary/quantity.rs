@@ -34,6 +34,22 @@ pub struct Measured {
     pub unit: Unit,
 }
 
+/// The mean of times of which some were cut off: of mistakes by the end of the run, say. Those count as having lasted at least so long
+/// (the restricted mean, the area under the Kaplan–Meier curve).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lasted {
+    /// The estimate; absent where nothing was over before it was cut off.
+    #[serde(flatten)]
+    pub estimate: Estimate,
+    /// How many were cut off.
+    pub cut_off: u64,
+    /// The longest time, if it was cut off: the mean is restricted to it, longer times counting as no longer. Absent where the longest was
+    /// over by itself, and the mean is the whole mean.
+    pub restricted_to: Option<f64>,
+    /// Its unit.
+    pub unit: Unit,
+}
+
 /// Figures by name, in an order that means something; an object in JSON.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named<T>(pub Vec<(String, T)>);

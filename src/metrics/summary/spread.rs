@@ -4,15 +4,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::SimTime;
 use crate::metrics::record::{TrafficRow, TrialRecord};
-use crate::metrics::statistics::{Estimate, Observation, mean, median_survival};
+use crate::metrics::statistics::{Estimate, Estimator, Observation, Part, median_survival};
 
 use super::quantity::{DIMENSIONLESS, Measured, Named, Unit};
-use super::{SECONDS, mean_over_trials};
+use super::{Figures, SECONDS};
 
 /// How rumours spread over the robots that nothing ails at the end of their trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpreadSummary {
-    /// Share of all pairs of a robot and a rumour in which the robot knew the rumour at the end: mean over trials.
+    /// Share of all pairs of a robot and a rumour in which the robot knew the rumour at the end: mean over trials, its interval within 0
+    /// and 1.
     pub informed_ratio: Measured,
     /// From the start until half of those pairs were informed.
     pub time_to_half: SpreadTime,
@@ -32,14 +33,11 @@ pub struct SpreadTime {
 }
 
 impl SpreadSummary {
-    /// How rumours spread in `records`; `None` if there were none.
-    pub(super) fn of(records: &[TrialRecord]) -> Option<Self> {
-        let trials: Vec<Pairs> = records.iter().filter_map(Pairs::of).collect();
+    /// How rumours spread; `None` if there were none.
+    pub(super) fn of(figures: &Figures) -> Option<Self> {
+        let trials: Vec<Pairs> = figures.records.iter().filter_map(Pairs::of).collect();
         (!trials.is_empty()).then(|| Self {
-            informed_ratio: Measured {
-                estimate: mean(&trials.iter().map(Pairs::informed_ratio).collect::<Vec<_>>()),
-                unit: DIMENSIONLESS.into(),
-            },
+            informed_ratio: figures.measured("spread.informed_ratio", DIMENSIONLESS),
             time_to_half: SpreadTime::of(&trials, |count| count.div_ceil(2)),
             time_to_all: SpreadTime::of(&trials, |count| count),
         })
@@ -86,12 +84,12 @@ pub(in crate::metrics) fn informed_ratio(record: &TrialRecord) -> Option<f64> {
     Pairs::of(record).map(|pairs| pairs.informed_ratio())
 }
 
-/// Duplicates in the messages delivered in a trial, of the rows of traffic that `counts` accepts; `None` if nothing was.
-pub(in crate::metrics) fn duplicate_ratio(record: &TrialRecord, counts: impl Fn(&TrafficRow) -> bool) -> Option<f64> {
+/// Duplicates in a trial and messages delivered, of the rows of traffic that `counts` accepts.
+pub(in crate::metrics) fn duplicates(record: &TrialRecord, counts: impl Fn(&TrafficRow) -> bool) -> Part {
     let rows = || record.traffic.iter().filter(|row| counts(row));
     let received: u64 = rows().map(|row| row.received.frames).sum();
     let duplicate: u64 = rows().map(|row| row.duplicate.frames).sum();
-    (received > 0).then(|| duplicate as f64 / received as f64)
+    [duplicate as f64, received as f64]
 }
 
 impl SpreadTime {
@@ -109,13 +107,18 @@ impl SpreadTime {
         let times: Vec<f64> = observations.iter().map(|observation| observation.time).collect();
         Self {
             median: median_survival(&observations),
-            mean: if complete { mean(&times) } else { Estimate::default() },
+            mean: if complete {
+                Estimator::Count.estimate(&times.iter().map(|&time| [time, 1.0]).collect::<Vec<_>>())
+            } else {
+                Estimate::default()
+            },
             unit: SECONDS.into(),
         }
     }
 }
 
-/// Messages that told their receiver nothing new, as far as the protocol says, in the messages delivered: mean over trials.
+/// Messages that told their receiver nothing new, as far as the protocol says, in the messages delivered over all trials; 0 where the
+/// protocol names none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Duplicates {
     /// On all topics.
@@ -128,18 +131,20 @@ pub struct Duplicates {
 }
 
 impl Duplicates {
-    /// Of `records`, by these names of `topics`; `None` if there were none.
-    pub(super) fn of(topics: &[&str], records: &[TrialRecord]) -> Option<Self> {
-        let mut rows = records.iter().flat_map(|record| &record.traffic);
-        let any = rows.any(|row| row.duplicate.frames > 0);
-        let share =
-            |counts: &dyn Fn(&TrafficRow) -> bool| mean_over_trials(records, |record| duplicate_ratio(record, counts));
-        any.then(|| Self {
-            total: share(&|_| true),
+    /// By these names of `topics`.
+    pub(super) fn of(topics: &[&str], figures: &Figures) -> Self {
+        Self {
+            total: figures.estimate("duplicates"),
             by_topic: Named::of(topics.iter().copied(), |topic| {
-                share(&|row| usize::from(row.topic) == topic)
+                figures.estimate(&format!("duplicates.by_topic.{}", topics[topic]))
             }),
             unit: DIMENSIONLESS.into(),
-        })
+        }
+    }
+
+    /// Whether there were any.
+    #[must_use]
+    pub fn any(&self) -> bool {
+        self.total.value > Some(0.0)
     }
 }

@@ -4,6 +4,7 @@ use super::*;
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::{Pose, Vec2};
 use crate::metrics::detection::{Cause, DetectionRecord, Missed, Suspicion};
+use crate::metrics::record::TopicFates;
 use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RunEnd};
 use crate::protocol::{MessageSize, Note, Role, Topic};
 use crate::radio::LossCause;
@@ -47,7 +48,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
     recorder.note(ActorId(1), &Note::Role(Role(1)));
     recorder.transmitted(ActorId(1), Topic(1), MessageSize::alone(15));
     recorder.offered(Topic(1), 1);
-    recorder.in_flight(Topic(1));
+    recorder.in_flight(Topic(1), Span::from_secs(0.02));
     recorder.sample(SimTime::ZERO, &[Vec2::zeros(), Vec2::new(1.0, 0.0)]);
     recorder.sample(
         SimTime::from_secs(1.0),
@@ -60,6 +61,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
         simulated: SimTime::from_secs(1.0),
         events: 30,
         digest: u128::from(number),
+        robot_steps: vec![10; 2],
         poses: vec![Pose::default(); 2],
     })
 }
@@ -109,7 +111,8 @@ fn bandwidth_is_bytes_of_a_robot_over_control_steps_with_and_without_headers() {
             value: Some(5.5),
             ci95: [Some(5.5); 2],
             n: 2
-        }
+        },
+        "what robots send is fixed here, and so is its mean"
     );
     assert_eq!((payload.min, payload.max), (Some(1.5), Some(4.0)));
     // Received: robot 0 nothing, robot 1 eight and six frames of 9 B: means over robots 3.6 and 2.7.
@@ -138,20 +141,23 @@ fn topics_and_roles_add_up_to_the_whole() {
 fn outcomes_delivery_and_connectivity_are_estimates_over_trials() {
     let summary = summary();
     assert_eq!((summary.trials, summary.completed), (2, 1));
-    assert_eq!(summary.completion_ratio.estimate, proportion(1, 2));
+    assert_eq!(
+        summary.completion_ratio.estimate,
+        super::super::statistics::proportion(1, 2)
+    );
     assert_eq!(
         summary.steps_to_completion.median.value,
-        Some(7.0),
-        "half are done at step 7, the other is cut off at 10"
+        Some(8.5),
+        "half are done from step 7 on, the other is cut off at 10"
     );
-    let expected = mean(&[8.0 / 11.0, 6.0 / 11.0]);
-    assert_eq!(summary.delivery_ratio.estimate, expected);
+    // Of 22 copies 6 were lost; the 2 under way have not been.
+    assert_eq!(summary.delivery_ratio.estimate.value, Some(16.0 / 22.0));
     // Trial 0 ends with the robots 2 m apart, just in range; trial 1 with 3 m.
     assert_eq!(summary.connected_share.estimate.value, Some(0.75));
     assert_eq!(summary.lambda2_min.min, Some(0.0));
     assert!(
         (summary.lambda2_min.estimate.value.unwrap() - 1.0).abs() < 1e-9,
-        "median of 2 and 0"
+        "mean of 2 and 0"
     );
     assert_eq!(summary.robots_used.estimate.value, Some(1.0));
     assert_eq!((summary.steps.value, summary.simulated_s.value), (20, 2.0));
@@ -181,6 +187,7 @@ fn keys_are_stable_and_in_a_stable_order() {
         "lambda2_min",
         "connected_share",
         "robots_used",
+        "duplicates",
         "detection",
         "steps",
         "simulated_s",
@@ -204,8 +211,15 @@ fn keys_are_stable_and_in_a_stable_order() {
     assert_eq!(keys(&json["detection"]), detection);
     assert_eq!(keys(&json["delivery_ratio"]), ["value", "ci95", "n", "unit"]);
     assert_eq!(keys(&json["steps_to_completion"]), ["median", "unit"]);
+    assert_eq!(
+        keys(&json["detection"]["mistake_duration_s"]),
+        ["value", "ci95", "n", "cut_off", "restricted_to", "unit"]
+    );
     assert_eq!(keys(&json["latency_s"]), ["p50", "p95", "p99", "mean", "unit"]);
-    assert_eq!(keys(&json["lambda2_min"]), ["value", "ci95", "n", "min", "unit"]);
+    assert_eq!(
+        keys(&json["lambda2_min"]),
+        ["value", "ci95", "n", "median", "min", "unit"]
+    );
     let directions = [
         "tx_bytes_per_step",
         "rx_bytes_per_step",
@@ -257,6 +271,62 @@ fn an_experiment_without_trials_or_mission_has_absent_figures_not_invented_ones(
 }
 
 #[test]
+fn a_lossless_radio_delivers_everything_however_much_is_under_way_and_a_deaf_receiver_hears_its_share() {
+    let ledger = |delivered, unheard, in_flight| {
+        let mut record = trial(0, 8);
+        let mut fates = TopicFates {
+            offered: delivered + unheard + in_flight,
+            delivered,
+            in_flight,
+            ..TopicFates::default()
+        };
+        fates.lost[LossCause::ReceiverDown as usize] = unheard;
+        record.ledger = vec![fates];
+        record
+    };
+    let delivered = |records: &[TrialRecord]| Summary::of("duet", &TOPICS, &ROLES, records).delivery_ratio.estimate;
+    let lossless = delivered(&[ledger(560, 0, 440), ledger(610, 0, 390)]);
+    assert_eq!((lossless.value, lossless.ci95[1]), (Some(1.0), Some(1.0)));
+    assert!(
+        lossless.ci95[0].is_some_and(|low| low > 0.998),
+        "of 2,000 copies none was lost"
+    );
+    assert_eq!(delivered(&[ledger(0, 0, 7)]).value, Some(1.0));
+    let deaf = delivered(&[ledger(600, 200, 400)]);
+    assert_eq!(
+        deaf.value,
+        Some(0.75),
+        "of what came as far as its receiver; the rest will fare alike"
+    );
+}
+
+#[test]
+fn mistakes_that_were_cut_off_count_as_having_lasted_longer() {
+    let lasted = |duration: f64, cut_off| Suspicion {
+        observer: ActorId(1),
+        subject: ActorId(0),
+        at: SimTime::from_secs(5.0),
+        heard: SimTime::from_secs(1.0),
+        sequence: 3,
+        until: None,
+        subject_down: false,
+        cause: Cause::Lost(LossCause::Channel),
+        missed: Missed::default(),
+        duration: Some(Span::from_secs(duration)),
+        cut_off,
+    };
+    let mut records = [trial(0, 8), trial(1, 6)];
+    records[0].detection.suspicions = vec![lasted(1.0, false), lasted(2.0, true)];
+    records[1].detection.suspicions = vec![lasted(4.0, false), lasted(5.0, true)];
+    let found = Summary::of("duet", &TOPICS, &ROLES, &records)
+        .detection
+        .mistake_duration_s;
+    // S is 3/4 from 1 s and 3/8 from 4 s on, to 5 s: 1 + 3 · 3/4 + 1 · 3/8.
+    assert!((found.estimate.value.unwrap() - 3.625).abs() < 1e-12);
+    assert_eq!((found.cut_off, found.restricted_to), (2, Some(5.0)));
+}
+
+#[test]
 fn detection_figures_are_ratios_of_sums_over_trials() {
     let mistake = |duration: f64| Suspicion {
         observer: ActorId(1),
@@ -283,15 +353,16 @@ fn detection_figures_are_ratios_of_sums_over_trials() {
     let detection = Summary::of("duet", &TOPICS, &ROLES, &records).detection;
     assert_eq!((detection.suspicions.value, detection.mistakes.value), (2, 2));
     let value = |measured: &Measured| measured.estimate.value;
+    let lasted = |lasted: &Lasted| lasted.estimate.value;
     assert_eq!(
         value(&detection.mistake_recurrence_s),
         Some(80.0),
         "a trial without a mistake counts too"
     );
     assert_eq!(value(&detection.mistake_rate_hz), Some(1.0 / 80.0));
-    assert_eq!(value(&detection.mistake_duration_s), Some(2.0));
+    assert_eq!(lasted(&detection.mistake_duration_s), Some(2.0));
     assert_eq!(value(&detection.query_accuracy), Some(1.0 - 4.0 / 160.0));
-    assert_eq!(value(&detection.detection_time_s), None, "nobody failed");
+    assert_eq!(lasted(&detection.detection_time_s), None, "nobody failed");
     let [low, high] = detection.query_accuracy.estimate.ci95;
     assert!(low < Some(0.975) && high > Some(0.975) && detection.query_accuracy.estimate.n == 2);
 }

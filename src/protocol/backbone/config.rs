@@ -256,6 +256,18 @@ impl BackboneConfig {
         }
     }
 
+    /// Where target number `index` is said, from this section on, and what to do if it lies badly.
+    #[must_use]
+    pub fn target_field(&self, index: usize) -> (String, &'static str) {
+        match self.targets {
+            TargetsConfig::Ring { .. } => (
+                "targets".to_owned(),
+                "make the ring's radius less or the arena larger, or move what stands in the way",
+            ),
+            TargetsConfig::At(_) => (format!("targets[{index}].at"), "move it, or what stands in its way"),
+        }
+    }
+
     /// The fewest robots that a mission takes: a root, a worker for each target, and for each of its links as many relays as the
     /// distance asks for.
     #[must_use]

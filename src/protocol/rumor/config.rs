@@ -95,6 +95,12 @@ impl SourcesConfig {
 }
 
 impl RumorConfig {
+    /// Whether rounds come at the times of a Poisson process, and not at control steps.
+    #[must_use]
+    pub fn is_poisson(&self) -> bool {
+        self.rounds == RoundsConfig::Poisson
+    }
+
     /// What is wrong with these settings together, for `robots` robots: the field at fault and what would be right.
     #[must_use]
     pub fn problems(&self, robots: u32) -> Vec<(String, String)> {

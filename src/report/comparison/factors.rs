@@ -165,6 +165,14 @@ pub fn effects(page: &mut Page, comparison: &Comparison, figure: &Figure) {
         return;
     }
     page.heading(&format!("Effects on {}, averaged over the other factors", figure.name));
+    let alike = |verdict: Verdict, p: Option<f64>| verdict == Verdict::NoDetectableDifference && p.is_none();
+    if comparison
+        .effects_in(&figure.key)
+        .all(|effect| alike(effect.verdict, effect.p_adjusted))
+    {
+        page.words("None: it is the same at all levels, in every trial.");
+        return;
+    }
     let header = ["", "difference", "relative", "p adjusted", ""].map(str::to_owned);
     let rows = comparison.effects_in(&figure.key).map(|effect| {
         vec![
@@ -172,14 +180,18 @@ pub fn effects(page: &mut Page, comparison: &Comparison, figure: &Figure) {
             fitted(&effect.difference),
             percent(effect.relative),
             probability(effect.p_adjusted),
-            effect_verdict(effect.verdict).to_owned(),
+            if alike(effect.verdict, effect.p_adjusted) {
+                "the same".to_owned()
+            } else {
+                effect_verdict(effect.verdict).to_owned()
+            },
         ]
     });
-    put(page, header.to_vec(), rows);
+    put(page, &header, rows);
     if comparison.interactions_in(&figure.key).next().is_none() {
         return;
     }
-    page.line("");
+    page.gap();
     let header = ["", "largest difference\nof differences", "p adjusted", ""].map(str::to_owned);
     let rows = comparison.interactions_in(&figure.key).map(|interaction| {
         let [first, second] = &interaction.factors;
@@ -197,5 +209,5 @@ pub fn effects(page: &mut Page, comparison: &Comparison, figure: &Figure) {
             verdict.to_owned(),
         ]
     });
-    put(page, header.to_vec(), rows);
+    put(page, &header, rows);
 }

@@ -22,6 +22,16 @@ pub fn finding(comparison: &Comparison) -> String {
         .settings
         .iter()
         .filter(|setting| known(setting, figure).is_some());
+    if comparison.family.tests == 0 && comparison.family.impossible > 0 {
+        let lead = format!(
+            "{} the {} {}: {}",
+            have(&best),
+            superlative(figure),
+            figure.name,
+            value(first, figure)
+        );
+        return format!("{} By the estimates alone, {lead}.", powerless(comparison));
+    }
     let mut found = if best.len() > 1 && best.len() == valued.count() {
         let all = if best.len() == comparison.settings.len() {
             format!("All {} settings", best.len())
@@ -41,9 +51,6 @@ pub fn finding(comparison: &Comparison) -> String {
         }
     };
     found.push_str(&factors::finding(comparison, figure));
-    if comparison.family.impossible > 0 && comparison.family.tests == 0 {
-        found.push_str(&powerless(comparison));
-    }
     found
 }
 
@@ -60,10 +67,15 @@ fn powerless(comparison: &Comparison) -> String {
         format!(": that takes {} trials of each setting or more", count(needed))
     });
     format!(
-        " {} trials cannot show any of {} differences, however large{remedy}.",
-        count(trials),
-        count(comparison.family.impossible)
+        "{} cannot show any of {}, however large{remedy}.",
+        counted(trials, "trial"),
+        counted(comparison.family.impossible, "difference")
     )
+}
+
+/// `1 trial`, `4 trials`.
+fn counted(number: u64, what: &str) -> String {
+    format!("{} {what}{}", count(number), if number == 1 { "" } else { "s" })
 }
 
 fn known(setting: &Setting, figure: &Figure) -> Option<f64> {

@@ -13,6 +13,7 @@ use std::path::Path;
 use super::layout::Page;
 use super::number::count;
 use crate::metrics::comparison::Comparison;
+use crate::text::{Style, shown};
 
 /// What the report of a comparison is made of.
 #[derive(Debug)]
@@ -23,18 +24,15 @@ pub struct ComparisonInput<'a> {
     pub folder: &'a Path,
     /// Names of the files there.
     pub files: &'a [&'a str],
-    /// Whether to use colours.
-    pub colour: bool,
+    /// How it is laid out.
+    pub style: Style,
 }
 
-/// The report as text, at most 80 columns wide.
+/// The report as text.
 #[must_use]
 pub fn comparison(input: &ComparisonInput) -> String {
     let comparison = input.comparison;
-    let mut page = Page {
-        text: String::new(),
-        colour: input.colour,
-    };
+    let mut page = Page::new(input.style);
     page.title(&comparison.study, comparison.question.as_deref());
     page.heading("Finding");
     page.words(&comparison.finding);
@@ -47,11 +45,11 @@ pub fn comparison(input: &ComparisonInput) -> String {
     if let Some(stopping) = &comparison.stopping {
         page.entry("stopped", &words::stopping(stopping, comparison));
     }
-    page.entry("results", &input.folder.display().to_string());
+    page.entry("results", &shown(input.folder));
     page.entry("", &input.files.join(", "));
-    page.line("");
+    page.gap();
     page.words("Figures in brackets are 95 % intervals over trials (BCa bootstrap; Greenwood for medians of what may be cut off).");
-    page.text
+    page.text()
 }
 
 /// What was compared, and how.

@@ -1,36 +1,17 @@
-//! The tables of a comparison, each within 80 columns.
-
-use comfy_table::{CellAlignment, ContentArrangement, Table};
+//! The tables of a comparison.
 
 use super::factors;
 use super::words::{can_differ, fitted, label, percent, probability};
 use crate::metrics::comparison::{Comparison, Pair, Setting, Verdict};
 use crate::metrics::figures::{Better, Figure};
-use crate::report::layout::{Page, RULED, WIDTH};
+use crate::report::grid::Grid;
+use crate::report::layout::Page;
 use crate::report::number::{NOTHING, count, figure as number};
 
-/// Figures side by side in one table.
-const ABREAST: usize = 2;
-
-pub fn put(page: &mut Page, header: Vec<String>, rows: impl Iterator<Item = Vec<String>>) {
-    let mut table = Table::new();
-    table.load_style(RULED).set_header(header);
-    table
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(WIDTH as u16);
-    for row in rows {
-        table.add_row(row);
-    }
-    for (index, column) in table.column_iter_mut().enumerate() {
-        column.set_padding((2, 0));
-        let alignment = if index == 0 {
-            CellAlignment::Left
-        } else {
-            CellAlignment::Right
-        };
-        column.set_cell_alignment(alignment);
-    }
-    page.line(&table.trim_fmt());
+pub fn put(page: &mut Page, header: &[String], rows: impl Iterator<Item = Vec<String>>) {
+    let mut grid = Grid::of_figures(header);
+    rows.for_each(|row| grid.row(row));
+    page.table(&grid);
 }
 
 fn compared(comparison: &Comparison) -> Vec<&Figure> {
@@ -52,21 +33,18 @@ fn title(figure: &Figure) -> String {
     }
 }
 
-/// A table of settings × figures, in parts where the figures are many.
+/// A table of settings × figures.
 pub fn settings(page: &mut Page, comparison: &Comparison) {
     page.heading("Settings");
     let figures = compared(comparison);
-    for (part, figures) in figures.chunks(ABREAST).enumerate() {
-        if part > 0 {
-            page.line("");
-        }
-        let header = std::iter::once(factors(comparison)).chain(figures.iter().map(|figure| title(figure)));
-        let rows = comparison.settings.iter().map(|setting| {
-            let values = figures.iter().map(|figure| value(setting, figure));
-            std::iter::once(marked(comparison, setting)).chain(values).collect()
-        });
-        put(page, header.collect(), rows);
-    }
+    let header: Vec<String> = std::iter::once(factors(comparison))
+        .chain(figures.iter().map(|figure| title(figure)))
+        .collect();
+    let rows = comparison.settings.iter().map(|setting| {
+        let values = figures.iter().map(|figure| value(setting, figure));
+        std::iter::once(marked(comparison, setting)).chain(values).collect()
+    });
+    put(page, &header, rows);
     let primary = |setting: &Setting| {
         setting
             .figures
@@ -75,7 +53,7 @@ pub fn settings(page: &mut Page, comparison: &Comparison) {
             .any(|(_, figure)| figure.survival.as_ref().is_some_and(|survival| survival.censored > 0))
     };
     if comparison.settings.iter().any(primary) {
-        page.line("");
+        page.gap();
         page.words("Means of steps are restricted: a trial that did not complete counts with the time limit.");
     }
 }
@@ -132,14 +110,14 @@ pub fn differences(page: &mut Page, comparison: &Comparison) {
         let rows = comparison
             .pairs_in(&figure.key)
             .map(|pair| difference(comparison, pair));
-        put(page, header.to_vec(), rows);
+        put(page, &header, rows);
     }
     if comparison
         .pairs
         .iter()
         .any(|pair| is_unclear(pair) && pair.plan.is_some())
     {
-        page.line("");
+        page.gap();
         page.words(&format!(
             "Unclear: no detectable difference. Cannot tell: so few trials cannot show any. The number of trials is what would show one of {} of the other's value with 80 % power.",
             percent(Some(comparison.relevant))
@@ -221,7 +199,7 @@ pub fn gains(page: &mut Page, comparison: &Comparison) {
             ratio,
         ]
     });
-    put(page, header.to_vec(), rows);
+    put(page, &header, rows);
 }
 
 /// The settings that no other beats in two figures.

@@ -110,20 +110,24 @@ pub fn bare(title: &str) -> Axis {
         .auto_margin(true)
 }
 
-/// A chart with these axes and no data yet.
-pub fn chart(x: Axis, y: Axis, hover: HoverMode) -> Plot {
-    let legend = Legend::new()
+/// A legend above the chart.
+pub fn legend() -> Legend {
+    Legend::new()
         .orientation(Orientation::Horizontal)
         .trace_order(TraceOrder::Normal)
         .x(0.0)
         .x_anchor(Anchor::Left)
         .y(1.02)
         .y_anchor(Anchor::Bottom)
-        .font(Font::new().size(11));
+        .font(Font::new().size(11))
+}
+
+/// A chart with these axes and no data yet.
+pub fn chart(x: Axis, y: Axis, hover: HoverMode) -> Plot {
     let layout = Layout::new()
         .x_axis(x)
         .y_axis(y)
-        .legend(legend)
+        .legend(legend())
         .hover_mode(hover)
         .hover_label(Label::new().font(Font::new().size(12)).name_length(40))
         .margin(Margin::new().left(8).right(12).top(8).bottom(8))

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::engine::SimTime;
 use crate::metrics::TrialRecord;
-use crate::metrics::statistics::quantile;
+use crate::metrics::statistics::{Observation, quantile, survival_curve};
 
 /// Points that a line is made of at most.
 const MOST_POINTS: usize = 300;
@@ -45,22 +45,15 @@ impl Spread {
     }
 }
 
-/// The quantiles of `values` as an ascending curve: every value if they are few, else quantiles that are evenly apart.
-/// Each point is a value and the share of values that are no greater.
-pub fn ecdf(mut values: Vec<f64>) -> Vec<[f64; 2]> {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    if n <= MOST_POINTS {
-        return (1..)
-            .zip(values)
-            .map(|(rank, value)| [value, f64::from(rank) / n as f64])
-            .collect();
-    }
-    (0..=MOST_POINTS)
-        .map(|point| {
-            let rank = (point * n).div_ceil(MOST_POINTS).max(1);
-            [values[rank - 1], rank as f64 / n as f64]
-        })
+/// The share of `times` that were over by each time, those that were cut off counted as longer than that (Kaplan–Meier): every time if
+/// they are few, else as many as a chart can show.
+pub fn over_by(times: &[Observation]) -> Vec<[f64; 2]> {
+    let steps = survival_curve(times);
+    let last = steps.len().saturating_sub(1);
+    let points = last.min(MOST_POINTS);
+    (0..=points)
+        .filter_map(|point| steps.get((point * last).checked_div(points).unwrap_or(0)))
+        .map(|step| [step.time, 1.0 - step.survival])
         .collect()
 }
 
@@ -105,11 +98,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_ecdf_of_few_values_has_a_point_each_and_of_many_every_quantile() {
-        assert_eq!(ecdf(vec![3.0, 1.0]), [[1.0, 0.5], [3.0, 1.0]]);
-        let many = ecdf((1..=100_000).map(f64::from).collect());
+    fn few_times_have_a_point_each_many_are_thinned_and_what_was_cut_off_took_longer() {
+        let seen = |time: f64, happened: bool| Observation { time, happened };
+        assert_eq!(over_by(&[seen(3.0, true), seen(1.0, true)]), [[1.0, 0.5], [3.0, 1.0]]);
+        // Of two that took longer than 2 s, one is over at 3 s: half of the half that was left.
+        let cut = [seen(1.0, true), seen(1.5, true), seen(2.0, false), seen(3.0, true)];
+        assert_eq!(over_by(&cut), [[1.0, 0.25], [1.5, 0.5], [3.0, 1.0]]);
+        assert_eq!(over_by(&[seen(3.0, false)]), [[0.0; 2]; 0]);
+        let many: Vec<_> = (1..=100_000).map(|time| seen(f64::from(time), true)).collect();
+        let many = over_by(&many);
         assert_eq!(many.len(), MOST_POINTS + 1);
-        assert_eq!((many[0][0].to_bits(), many[150]), (1.0_f64.to_bits(), [50_000.0, 0.5]));
+        assert!((many[0][0] - 1.0).abs() < 1e-12 && (many[150][1] - 0.5).abs() < 1e-4);
     }
 
     #[test]

@@ -6,12 +6,13 @@ use plotly::layout::HoverMode;
 
 use super::PageInput;
 use super::chart::{axis, cause_colour, chart, line, one_value, percent_axis, stacked, words};
-use super::data::ecdf;
+use super::data::over_by;
 use super::figure::{Figure, Panel};
 use super::names::Names;
 use super::table::DataTable;
-use crate::metrics::detection::{Cause, FailureOutcome, Verdict};
-use crate::metrics::summary::Measured;
+use crate::metrics::detection::{Cause, DetectionRecord, Verdict};
+use crate::metrics::statistics::{Estimate, Observation};
+use crate::metrics::summary::{Lasted, detection_times, mistake_durations};
 use crate::protocol::detector::DetectorConfig;
 use crate::report::number;
 
@@ -72,51 +73,49 @@ fn said(verdict: Verdict) -> &'static str {
 
 /// How long detection took, and how long mistakes lasted.
 pub fn times(input: &PageInput) -> Option<Figure> {
-    let records = || input.records.iter().map(|record| &record.detection);
-    let detected: Vec<f64> = records()
-        .flat_map(|detection| &detection.failures)
-        .filter_map(|failure| match failure.outcome {
-            FailureOutcome::Detected(after) => Some(after.as_secs()),
-            _ => None,
-        })
-        .collect();
-    let mistaken: Vec<f64> = records()
-        .flat_map(|detection| &detection.suspicions)
-        .filter_map(|suspicion| suspicion.duration.map(crate::engine::Span::as_secs))
-        .collect();
+    let times = |of: fn(&DetectionRecord) -> Vec<Observation>| {
+        input
+            .records
+            .iter()
+            .flat_map(|record| of(&record.detection))
+            .collect::<Vec<_>>()
+    };
     let both = [
         (
             "Detection time T_D",
             "time from a failure to its detection, s",
             "failures detected",
             "#0072b2",
-            detected,
+            times(detection_times),
         ),
         (
             "Mistake duration T_M",
             "time from a mistake to trust, s",
             "mistakes over",
             "#d55e00",
-            mistaken,
+            times(mistake_durations),
         ),
     ];
     let mut table = DataTable::new(&["of", "time, s", "share that took no longer, %"]);
     let mut panels = Vec::new();
     let mut words = Vec::new();
     for (title, unit, what, colour, values) in both {
-        if values.is_empty() {
+        let curve = over_by(&values);
+        if curve.is_empty() {
             continue;
         }
-        words.push(format!("{} {what}", number::count(values.len() as u64)));
-        if let Some(value) = one_value(values.iter().copied()) {
+        let over = values.iter().filter(|seen| seen.happened).count();
+        words.push(format!(
+            "{} {what}, {} cut off",
+            number::count(over as u64),
+            number::count((values.len() - over) as u64)
+        ));
+        if let Some(value) = one_value(values.iter().map(|seen| seen.time)).filter(|_| over == values.len()) {
             table.rows.push(vec![title.into(), value.into(), 100.0.into()]);
             panels.push(Panel::words(title, format!("{} each time.", number::seconds(value))));
             continue;
         }
-        let curve: Vec<[f64; 2]> = ecdf(values)
-            .into_iter()
-            .map(|[time, share]| [time, share * 100.0])
-            .collect();
+        let curve: Vec<[f64; 2]> = curve.into_iter().map(|[time, share]| [time, share * 100.0]).collect();
         for [time, share] in &curve {
             table.rows.push(vec![title.into(), (*time).into(), (*share).into()]);
         }
@@ -140,8 +139,8 @@ pub fn times(input: &PageInput) -> Option<Figure> {
         id: "detection-times".into(),
         title: "Detection times and mistakes".into(),
         caption: format!(
-            "Which share took no longer than so many seconds ({}). Failures count once for each robot that watched; those that were never detected are counted under \
-             “What was found”, not here.",
+            "Which share took no longer than so many seconds ({}). Failures count once for each robot that watched. What was cut off, by the end of the run or \
+             by another failure, counts as having taken longer than that (Kaplan–Meier).",
             words.join(", ")
         ),
         panels,
@@ -160,18 +159,15 @@ pub fn quality(input: &PageInput) -> Vec<(&'static str, String)> {
         return Vec::new();
     }
     let failures = &detection.failures;
-    let seconds = |name, measured: &Measured| {
-        let estimate = &measured.estimate;
-        let value = estimate
-            .value
-            .map(|_| format!("{} s", number::estimate(estimate, number::figure)));
-        value.map(|value| (name, value))
-    };
+    let told = |name, estimate: &Estimate, words: String| estimate.value.map(|_| (name, words));
+    let recurrence = &detection.mistake_recurrence_s.estimate;
+    let lasted = |name, lasted: &Lasted| told(name, &lasted.estimate, number::lasted(lasted));
     let accuracy = number::estimate(&detection.query_accuracy.estimate, number::percent);
     let mut rows = vec![("query accuracy P_A", accuracy)];
-    rows.extend(seconds("mistake recurrence T_MR", &detection.mistake_recurrence_s));
-    rows.extend(seconds("mistake duration T_M", &detection.mistake_duration_s));
-    rows.extend(seconds("detection time T_D", &detection.detection_time_s));
+    let words = format!("{} s", number::estimate(recurrence, number::figure));
+    rows.extend(told("mistake recurrence T_MR", recurrence, words));
+    rows.extend(lasted("mistake duration T_M", &detection.mistake_duration_s));
+    rows.extend(lasted("detection time T_D", &detection.detection_time_s));
     if failures.observed > 0 {
         let words = format!(
             "{} of {}",

@@ -1,10 +1,10 @@
 //! What single factors do to a figure, and whether what one does depends on another.
 
 use plotly::Scatter;
-use plotly::common::{DashType, Line, Marker, Mode};
-use plotly::layout::{HoverMode, Legend, TraceOrder};
+use plotly::common::{DashType, Line, Marker, Mode, Title};
+use plotly::layout::HoverMode;
 
-use super::chart::{chart, escaped, one_value, shown, topic_colour};
+use super::chart::{chart, escaped, legend, one_value, shown, topic_colour};
 use super::figure::{Figure, HEIGHT, Panel};
 use super::matrix;
 use super::settings::{
@@ -136,7 +136,7 @@ fn by_levels(comparison: &Comparison, figure: &figures::Figure, interaction: &In
                     levels,
                     values: &values,
                 },
-                &format!("{} upwards, darker is better", names[1]),
+                &format!("{} downwards, darker is better", names[1]),
                 figure.better,
                 number::figure,
             ),
@@ -183,12 +183,9 @@ fn plot_of_lines(
 ) -> Panel {
     let names = super::names::Names::of(x.iter().map(String::as_str));
     let mut plot = chart(names.across(across), near(&with_unit(figure)), HoverMode::Closest);
-    let legend = plot.layout().clone().show_legend(true).legend(
-        Legend::new()
-            .title(plotly::common::Title::with_text(escaped(lines)))
-            .trace_order(TraceOrder::Normal),
-    );
-    plot.set_layout(legend);
+    let legend = legend().title(Title::with_text(escaped(lines)));
+    let layout = plot.layout().clone().show_legend(true).legend(legend);
+    plot.set_layout(layout);
     for (place, (level, row)) in y.iter().zip(values).enumerate() {
         let known: Vec<(usize, f64)> = row
             .iter()

@@ -59,7 +59,7 @@ pub fn spread(input: &PageInput) -> Option<Figure> {
 
 /// Messages that told their receiver nothing new; none where the protocol names no duplicates.
 pub fn duplicates(input: &PageInput) -> Option<Figure> {
-    let duplicates = input.summary.duplicates.as_ref()?;
+    let duplicates = Some(&input.summary.duplicates).filter(|duplicates| duplicates.any())?;
     let mut table = DataTable::new(&["topic", "duplicates in messages delivered", "95 % from", "to"]);
     let topics = || duplicates.by_topic.0.iter().enumerate();
     let readable: Vec<String> = topics().map(|(_, (name, _))| name.replace('_', " ")).collect();
@@ -89,7 +89,7 @@ pub fn duplicates(input: &PageInput) -> Option<Figure> {
         title: "Duplicates".into(),
         caption: format!(
             "Of the messages of each topic that were delivered {}, the share that told their receiver nothing new, as the protocol \
-             judges it: mean over trials. A topic of which nothing was delivered has none.",
+             judges it. A topic of which nothing was delivered has none.",
             input.in_trials()
         ),
         panels: vec![

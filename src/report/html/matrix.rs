@@ -131,7 +131,8 @@ pub fn levels(table: &Levels, title: &str, better: Better, write: impl Fn(f64) -
             values.iter().enumerate().map(of).collect()
         })
         .collect();
-    let stops = [(0.0, "#f7fbff"), (0.5, "#9ecae1"), (1.0, "#2171b5")];
+    // Pale enough for black numbers.
+    let stops = [(0.0, "#ffffff"), (0.5, "#c6dbef"), (1.0, "#6baed6")];
     let scale = stops.map(|(at, colour)| ColorScaleElement(at, colour.to_owned()));
     let bar = ColorBar::new()
         .title(Title::with_text(""))

@@ -12,6 +12,7 @@ use super::table::{Cell, DataTable};
 use crate::metrics::comparison::{Comparison, Setting, Survival};
 use crate::metrics::statistics::{Observation, Step, survival_curve};
 use crate::metrics::{HealingEpisode, Outcome};
+use crate::report::missed::{self, Asked};
 use crate::report::number;
 
 const COLOUR: &str = "#0072b2";
@@ -39,7 +40,7 @@ pub fn completion(input: &PageInput) -> Option<Figure> {
     let cut_off = observations.iter().filter(|observation| !observation.happened).count() as u64;
     let caption = format!(
         "The share of missions complete by each control step of {} s, after Kaplan and Meier: {} of {} trials completed; half are done after \
-         {median} control steps. {}{}",
+         {median} control steps. {}{}{}",
         input.scenario.control.period.get(),
         number::count(summary.completed),
         number::count(observations.len() as u64),
@@ -51,7 +52,8 @@ pub fn completion(input: &PageInput) -> Option<Figure> {
                 " The {} trials that the time limit cut off count as not yet complete, each marked by a tick.",
                 number::count(many)
             ),
-        }
+        },
+        why_missed(input)
     );
     let axis = "control steps";
     Some(curve(
@@ -62,6 +64,19 @@ pub fn completion(input: &PageInput) -> Option<Figure> {
         axis,
         "missions complete",
     ))
+}
+
+/// Which targets failed trials missed, and why.
+fn why_missed(input: &PageInput) -> String {
+    let sentences = missed::sentences(input.summary, Asked::of(input.scenario).as_ref());
+    let said = sentences.iter().map(|sentence| format!(" {}.", capitalised(sentence)));
+    said.collect()
+}
+
+fn capitalised(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    let first = letters.next().map(|letter| letter.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
 }
 
 /// When targets had their links again after a failure.

@@ -1,12 +1,14 @@
 //! Names along an axis: every one of them drawn, whatever it looks like.
 
 use plotly::common::TickMode;
-use plotly::layout::{Axis, AxisType, CategoryOrder};
+use plotly::layout::{Axis, AxisRange, AxisType, CategoryOrder};
 
 use super::chart::{bare, escaped};
 
 /// Longest name along an axis, characters: what a telephone has room for.
 const LONGEST: usize = 26;
+/// Up to so many names there is room for two lines each.
+const MOST_OF_TWO_LINES: usize = 20;
 /// What follows a name that plotly would mix up with another or with one of its own: nothing that is seen.
 const UNSEEN: char = '\u{200b}';
 /// Names that every object has in the language of the page.
@@ -46,9 +48,13 @@ impl Names {
         for (number, &place) in clashing.iter().enumerate() {
             shown[place] = format!("{} ({})", shown[place], number + 1);
         }
+        let shown_count = full.len();
         let mut categories: Vec<String> = Vec::new();
-        for name in shown {
-            let mut name = escaped(&name);
+        for (name, full) in shown.into_iter().zip(&full) {
+            let two = (full.chars().count() > LONGEST && shown_count <= MOST_OF_TWO_LINES)
+                .then(|| in_two(full))
+                .flatten();
+            let mut name = two.unwrap_or_else(|| escaped(&name));
             while TAKEN.contains(&name.as_str()) || categories.contains(&name) {
                 name.push(UNSEEN);
             }
@@ -78,15 +84,25 @@ impl Names {
     }
 
     fn axis(&self, title: &str, order: Vec<String>) -> Axis {
-        // Left to itself, plotly takes names that look like numbers or dates for these, and leaves out labels where they are many.
+        // Left to itself, plotly takes names that look like numbers or dates for these, and leaves out labels where they are many, and places
+        // at the ends where there is nothing to draw.
         bare(title)
             .show_grid(false)
             .type_(AxisType::Category)
             .category_order(CategoryOrder::Array)
+            .range(AxisRange::new(-0.5, order.len() as f64 - 0.5))
             .category_array(order)
             .tick_mode(TickMode::Linear)
             .dtick(1.0)
     }
+}
+
+/// A name in two lines, if a blank parts it so that both are short enough.
+fn in_two(name: &str) -> Option<String> {
+    let mut blanks = name.match_indices(' ').map(|(at, _)| name.split_at(at));
+    let (first, second) = blanks.rfind(|(first, _)| first.chars().count() <= LONGEST)?;
+    let fits = second.trim().chars().count() <= LONGEST && !name.contains(char::is_control);
+    fits.then(|| format!("{}<br>{}", escaped(first), escaped(second.trim())))
 }
 
 /// A name with its middle left out where it is long, all but so many characters of its beginning.
@@ -140,10 +156,13 @@ mod tests {
         let long = |middle: &str, end: &str| format!("piggybacked statuses on change {middle} with repetition {end}");
         let names = [long("a", "2"), long("b", "2"), long("a", "3"), "x < y & z".to_owned()];
         let all = Names::of(names.iter().map(String::as_str)).all();
-        assert!(
-            all[..3].iter().all(|name| name.chars().count() <= LONGEST + 4),
-            "{all:?}"
-        );
+        let mut lines = all[..3].iter().flat_map(|name| name.split("<br>"));
+        assert!(lines.all(|line| line.chars().count() <= LONGEST + 4), "{all:?}");
+        let two = Names::of(["status interval: 0.5 s less 0.1 s"]).at(0);
+        assert_eq!(two, "status interval: 0.5 s<br>less 0.1 s");
+        // Of many names each has a single line.
+        let many = vec![names[0].as_str(); 30];
+        assert!(Names::of(many).all().iter().all(|name| !name.contains("<br>")));
         let mut unlike = all.clone();
         unlike.sort();
         unlike.dedup();

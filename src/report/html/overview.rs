@@ -41,7 +41,7 @@ pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
     if summary.lambda2_min.min.is_some() {
         rows.push((
             "least λ₂, median of trials",
-            estimate(&summary.lambda2_min.estimate, figure),
+            estimate(&summary.lambda2_min.median, figure),
         ));
         rows.push((
             "in one piece, share of the time",
@@ -61,8 +61,8 @@ pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
         let time = estimate(&spread.time_to_all.median, seconds);
         rows.push(("until all were, Kaplan–Meier median", time));
     }
-    if let Some(duplicates) = &summary.duplicates {
-        let share = estimate(&duplicates.total, percent);
+    if summary.duplicates.any() {
+        let share = estimate(&summary.duplicates.total, percent);
         rows.push(("duplicates in the messages delivered", share));
     }
     let surprises = predict::surprises(input.scenario, summary);

@@ -9,6 +9,7 @@ use super::figure::Figure;
 use super::{PageInput, bandwidth, connectivity, detection, gossip, map, mission, overview, radio, robots, series};
 use crate::report::number::{count, seconds};
 use crate::scenario::to_ron;
+use crate::text::{clean, clean_lines};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
@@ -62,8 +63,10 @@ pub fn page(input: &PageInput) -> String {
     document(&title, &body)
 }
 
-/// The document around a page's body: style, the script of the charts, our own.
+/// The document around a page's body: style, the script of the charts, our own. What others wrote into the body is words already;
+/// here it loses what nobody could see.
 pub(super) fn document(title: &str, body: &Markup) -> String {
+    let body = PreEscaped(clean_lines(&body.0).into_owned());
     let document = html! {
         (DOCTYPE)
         html lang="en" {
@@ -72,7 +75,7 @@ pub(super) fn document(title: &str, body: &Markup) -> String {
                 (PreEscaped(PAGE_MARK))
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { (title) }
+                title { (clean(title)) }
                 link rel="icon" href="data:,";
                 style { (PreEscaped(STYLE)) }
                 (PreEscaped(chart_script()))

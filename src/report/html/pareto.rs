@@ -21,6 +21,8 @@ const PLANE: u32 = 440;
 const NARROW: [f64; 2] = [270.0, 330.0];
 /// Of a label: width of a character and height, in CSS pixels.
 const LETTER: [f64; 2] = [7.0, 15.0];
+/// Labels of points further right than this share of the plane reach to the left.
+const LEFT_FROM: f64 = 2.0 / 3.0;
 /// Longest name that stands beside its point.
 const LONGEST: usize = 12;
 
@@ -133,52 +135,71 @@ struct Label {
     /// Places of its points; it stands at the first.
     points: Vec<usize>,
     text: String,
-    side: Side,
-}
-
-/// Towards which side of its point a label reaches: away from the nearer edge.
-#[derive(Clone, Copy)]
-enum Side {
-    Left,
-    Middle,
-    Right,
+    /// Whether it reaches to the left of its point, away from the right edge.
+    left: bool,
+    /// Whether it stands below its point.
+    below: bool,
 }
 
 /// Labels that do not overlap, and the names of the numbers in them: names where each has room, else numbers, those of neighbours together.
 fn labels(spots: &[[f64; 2]], names: &[&str]) -> (Vec<Label>, Vec<String>) {
-    let apart = |labels: &[Label]| {
-        let all = (0..labels.len()).flat_map(|a| (a + 1..labels.len()).map(move |b| [a, b]));
-        all.into_iter()
-            .find(|[a, b]| overlap(extent(&labels[*a], spots), extent(&labels[*b], spots)))
-    };
-    let single = |place: usize, text: String| Label {
-        points: vec![place],
-        text,
-        side: side(spots[place][0]),
-    };
-    let named: Vec<Label> = names
-        .iter()
-        .enumerate()
-        .map(|(place, name)| single(place, escaped(name)))
-        .collect();
-    if names.iter().all(|name| name.chars().count() <= LONGEST) && apart(&named).is_none() {
+    let groups: Vec<Vec<usize>> = (0..names.len()).map(|place| vec![place]).collect();
+    if names.iter().all(|name| name.chars().count() <= LONGEST)
+        && let Ok(named) = placed(spots, &groups, |points| escaped(names[points[0]]))
+    {
         return (named, Vec::new());
     }
-    let mut labels: Vec<Label> = (0..names.len())
-        .map(|place| single(place, (place + 1).to_string()))
-        .collect();
-    while let Some([a, b]) = apart(&labels) {
-        let other = labels.remove(b);
-        let label = &mut labels[a];
-        label.points.extend(other.points);
-        // At its highest point, above which it stands.
-        label
-            .points
-            .sort_by(|p, q| spots[*p][1].total_cmp(&spots[*q][1]).then(p.cmp(q)));
-        label.text = numbers(&label.points);
-        label.side = side(spots[label.points[0]][0]);
+    let mut groups = groups;
+    loop {
+        match placed(spots, &groups, numbers) {
+            Ok(labels) => return (labels, names.iter().map(|&name| name.to_owned()).collect()),
+            Err([first, other]) => {
+                let other = groups.remove(other);
+                groups[first].extend(other);
+                groups[first].sort_unstable();
+            }
+        }
     }
-    (labels, names.iter().map(|&name| name.to_owned()).collect())
+}
+
+/// A label for each group of points, above or below its first.
+///
+/// # Errors
+/// Two groups, the first before the second, that leave no room for each other.
+fn placed(
+    spots: &[[f64; 2]],
+    groups: &[Vec<usize>],
+    text: impl Fn(&[usize]) -> String,
+) -> Result<Vec<Label>, [usize; 2]> {
+    let mut labels: Vec<Label> = Vec::new();
+    for (place, points) in groups.iter().enumerate() {
+        let mut clash = None;
+        for below in [false, true] {
+            let label = Label {
+                points: points.clone(),
+                text: text(points),
+                left: spots[points[0]][0] > LEFT_FROM * NARROW[0],
+                below,
+            };
+            let extent = extent(&label, spots);
+            let inside = extent[2] >= 0.0 && extent[3] <= NARROW[1];
+            let other = labels
+                .iter()
+                .position(|other| overlap(self::extent(other, spots), extent));
+            match other {
+                None if inside || !below => {
+                    labels.push(label);
+                    clash = None;
+                    break;
+                }
+                other => clash = clash.or(other),
+            }
+        }
+        if let Some(other) = clash {
+            return Err([other, place]);
+        }
+    }
+    Ok(labels)
 }
 
 /// `1–3, 7` of the places 0, 1, 2 and 6; of many, how many they are.
@@ -201,24 +222,13 @@ fn numbers(places: &[usize]) -> String {
     }
 }
 
-fn side(x: f64) -> Side {
-    match x / NARROW[0] {
-        share if share < 1.0 / 3.0 => Side::Right,
-        share if share > 2.0 / 3.0 => Side::Left,
-        _ => Side::Middle,
-    }
-}
-
 /// Left, right, top and bottom of a label.
 fn extent(label: &Label, spots: &[[f64; 2]]) -> [f64; 4] {
     let [x, y] = spots[label.points[0]];
     let width = LETTER[0] * label.text.chars().count() as f64 + 4.0;
-    let left = match label.side {
-        Side::Left => x - width,
-        Side::Middle => x - width / 2.0,
-        Side::Right => x,
-    };
-    [left, left + width, y - LETTER[1], y]
+    let left = if label.left { x - width } else { x };
+    let top = if label.below { y } else { y - LETTER[1] };
+    [left, left + width, top, top + LETTER[1]]
 }
 
 fn overlap(a: [f64; 4], b: [f64; 4]) -> bool {
@@ -227,10 +237,11 @@ fn overlap(a: [f64; 4], b: [f64; 4]) -> bool {
 
 fn texts(labels: &[Label], points: &[ParetoPoint]) -> Box<Scatter<f64, f64>> {
     let at = |label: &Label| &points[label.points[0]];
-    let position = |label: &Label| match label.side {
-        Side::Left => Position::TopLeft,
-        Side::Middle => Position::TopCenter,
-        Side::Right => Position::TopRight,
+    let position = |label: &Label| match (label.below, label.left) {
+        (false, false) => Position::TopRight,
+        (false, true) => Position::TopLeft,
+        (true, false) => Position::BottomRight,
+        (true, true) => Position::BottomLeft,
     };
     Scatter::new(
         labels.iter().map(|label| shown(at(label).x)).collect(),
@@ -280,11 +291,11 @@ mod tests {
         let spread: Vec<[f64; 2]> = (0..40)
             .map(|i| [f64::from(i * 97 % 270), f64::from(i * 61 % 330)])
             .collect();
-        assert!(check(&spread, &names) > 15);
+        assert!(check(&spread, &names) > 25);
         let crowded: Vec<[f64; 2]> = (0..40)
             .map(|i| [130.0 + f64::from(i % 7), 100.0 + f64::from(i % 5)])
             .collect();
-        assert_eq!(check(&crowded, &names), 1);
+        assert!(check(&crowded, &names) <= 2);
         let curve: Vec<[f64; 2]> = (0..40)
             .map(|i| [f64::from(i * i) / 6.0, 330.0 - f64::from(i) * 8.0])
             .collect();

@@ -38,12 +38,12 @@ pub struct Row {
 
 /// A figure's value in every setting.
 pub fn by_setting(comparison: &Comparison, figure: &figures::Figure) -> Option<Figure> {
-    let estimated = comparison.settings.iter().filter_map(|setting| {
-        let estimate = &setting.figure(&figure.key)?.estimate;
-        estimate.value.map(|_| (setting, estimate))
+    let estimated = comparison.settings.iter().map(|setting| {
+        let estimate = setting.figure(&figure.key).map(|figure| figure.estimate);
+        (setting, estimate.unwrap_or_default())
     });
     let estimated: Vec<_> = estimated.collect();
-    estimated.first()?;
+    estimated.iter().find(|(_, estimate)| estimate.value.is_some())?;
     let mut table = DataTable::new(&["setting", "trials", &with_unit(figure), "low", "high"]);
     table.rows.extend(estimated.iter().map(|(setting, estimate)| {
         let mut row: Vec<Cell> = vec![setting.label.as_str().into(), setting.trials.into()];
@@ -52,7 +52,7 @@ pub fn by_setting(comparison: &Comparison, figure: &figures::Figure) -> Option<F
     }));
     let rows = estimated.iter().map(|(setting, estimate)| Row {
         name: setting.label.clone(),
-        estimate: **estimate,
+        estimate: *estimate,
         colour: NEUTRAL,
     });
     let caption = format!(
@@ -145,7 +145,7 @@ pub fn differences(comparison: &Comparison, figure: &figures::Figure) -> Option<
 
 /// An axis of differences in a figure, with its zero.
 pub fn difference_axis(figure: &figures::Figure) -> Axis {
-    axis(&format!("difference, {}", unit(figure)))
+    near(&format!("difference, {}", unit(figure)))
         .zero_line(true)
         .zero_line_color(INK)
 }
@@ -185,6 +185,7 @@ pub fn forest(rows: &[Row], x: Axis, alike: impl Fn(&str) -> String) -> Panel {
         [row.estimate.value, low, high].into_iter().flatten()
     };
     if rows.len() > 1
+        && rows.iter().all(|row| row.estimate.value.is_some())
         && let Some(value) = one_value(rows.iter().flat_map(ends))
     {
         return Panel::words("", alike(&number::figure(value)));

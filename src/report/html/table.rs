@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use maud::{Markup, html};
 
+use crate::text::clean;
+
 /// Longer tables stay on the screen when the page is printed.
 pub const PRINTED_ROWS: usize = 24;
 
@@ -87,7 +89,8 @@ impl DataTable {
         }
     }
 
-    /// The table as CSV (RFC 4180), numbers in full.
+    /// The table as CSV (RFC 4180), numbers in full. Words with which a spreadsheet would begin a formula have an apostrophe before
+    /// them, by which it takes them for words.
     pub fn csv(&self) -> String {
         let head = self.head.iter().map(|name| quoted(name)).collect::<Vec<_>>();
         let mut text = head.join(",");
@@ -133,12 +136,25 @@ fn readable(number: f64) -> String {
     }
 }
 
+/// Words as a value: in quotes where they hold what parts values, whatever a spreadsheet takes for that, and never a formula.
 fn quoted(text: &str) -> String {
-    if text.contains(['"', ',', '\r', '\n']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
+    let text = clean(text);
+    let apostrophe = if begins_formula(&text) { "'" } else { "" };
+    if apostrophe.is_empty() && !text.contains(['"', '\'', ',', ';']) {
+        text.into_owned()
     } else {
-        text.to_owned()
+        format!("\"{apostrophe}{}\"", text.replace('"', "\"\""))
     }
+}
+
+/// Whether a spreadsheet would take words, which hold no control characters, for a formula; in the wide letters of East Asian scripts
+/// too, and after blanks.
+fn begins_formula(text: &str) -> bool {
+    let is_number = text.parse::<f64>().is_ok_and(f64::is_finite);
+    !is_number
+        && text
+            .trim_start()
+            .starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠'])
 }
 
 /// A link that holds the file itself.
@@ -171,6 +187,38 @@ mod tests {
         assert_eq!(
             table.csv(),
             "topic,\"share, %\"\r\n\"say \"\"hi\"\"\",0.3333333333333333\r\n,1234567\r\n"
+        );
+    }
+
+    #[test]
+    fn words_that_a_spreadsheet_would_reckon_with_stay_words_and_numbers_numbers() {
+        let table = DataTable {
+            head: vec!["=HYPERLINK(\"http://x\")".to_owned()],
+            rows: [
+                "=1+1", "-2+3", "@SUM(A1)", "＋1", " =1", "\t=1", "\r-1", "a;=1+1", "-inf", "-0.5", "+3e2", "a-b",
+            ]
+            .map(|label| vec![label.into()])
+            .into(),
+        };
+        let csv = table.csv();
+        let cells: Vec<&str> = csv.lines().collect();
+        assert_eq!(
+            cells,
+            [
+                "\"'=HYPERLINK(\"\"http://x\"\")\"",
+                "\"'=1+1\"",
+                "\"'-2+3\"",
+                "\"'@SUM(A1)\"",
+                "\"'＋1\"",
+                "\"' =1\"",
+                "␉=1",
+                "␍-1",
+                "\"a;=1+1\"",
+                "\"'-inf\"",
+                "-0.5",
+                "+3e2",
+                "a-b"
+            ]
         );
     }
 

@@ -46,7 +46,8 @@ pub struct Study {
     /// Keys of further figures to compare.
     #[serde(default)]
     pub also: Vec<String>,
-    /// The setting that the others are held against: a label for each factor. None by default: all are held against each other.
+    /// The setting that the others are held against: a label for each factor. None by default: all are held against each other, in a full
+    /// design of several factors the levels of each over all of the others.
     #[serde(default)]
     pub reference: Vec<String>,
     /// A relative difference worth finding, such as 0.05: where no difference is found, the report says how many trials would show one

@@ -1,17 +1,48 @@
 //! What is allowed and hardly meant: settings that can do nothing, or not what their author will have had in mind. Each is
 //! a warning, said with its place and its remedy; a scenario that has some is run all the same.
 
+mod mission;
+mod place;
+mod time;
+
 use super::checks::Problem;
-use super::{ProtocolConfig, Scenario};
+use super::{ProtocolConfig, Scenario, needs};
 use crate::metrics::MetricsConfig;
 use crate::motion::MotionConfig;
-use crate::radio::SensingConfig;
+use crate::radio::{LossConfig, SensingConfig};
 
 /// Everything that looks wrong with `scenario`, which holds.
 pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
     let mut found = unread(scenario);
-    found.extend(samples(scenario));
+    found.extend(losses(scenario));
+    found.extend(time::warnings(scenario));
+    found.extend(place::warnings(scenario));
+    found.extend(mission::warnings(scenario));
+    found.extend(needs::warnings(scenario));
     found
+}
+
+/// Channels that let nothing through, or never do what they are set up for.
+fn losses(scenario: &Scenario) -> Option<Problem> {
+    let radio = &scenario.radio;
+    let range = radio.range.get();
+    if radio.loss.mean_loss(range / 2.0, range) >= 1.0 {
+        let message = "the channel loses every frame: no robot ever hears another";
+        return Some(Problem::new("radio.loss", message, "make the loss less than 1"));
+    }
+    match radio.loss {
+        LossConfig::GilbertElliott {
+            good_to_bad, bad_loss, ..
+        } if good_to_bad.get() <= 0.0 => {
+            let message = format!(
+                "the channel is never in its bad state, so that its `bad_loss` of {} counts for nothing",
+                bad_loss.get()
+            );
+            let help = "make `good_to_bad` greater than 0, or use Bernoulli with the loss of the good state";
+            Some(Problem::new("radio.loss", message, help))
+        }
+        _ => None,
+    }
 }
 
 /// Settings that differ from their defaults and that nothing reads with this protocol.
@@ -65,26 +96,4 @@ fn unread(scenario: &Scenario) -> Vec<Problem> {
             Problem::new(path, message, format!("leave `{path}` out")).with(&["protocol", "wander"])
         });
     told.collect()
-}
-
-/// Samples and series of which a trial is too short to hold any.
-fn samples(scenario: &Scenario) -> Option<Problem> {
-    let time_limit = scenario.time_limit.get();
-    let interval = scenario.metrics.sample_interval.get();
-    let every = scenario.metrics.series_every;
-    let entry = interval * f64::from(every);
-    let also = ["time_limit"];
-    if interval > time_limit {
-        let message =
-            format!("samples are {interval} s apart, and a trial ends at {time_limit} s: only its start is sampled");
-        let help = "make `metrics.sample_interval` shorter, or 0 for no samples";
-        return Some(Problem::new("metrics.sample_interval", message, help).with(&also));
-    }
-    (entry > time_limit).then(|| {
-        let message =
-            format!("an entry of the series takes {entry} s, and a trial ends at {time_limit} s: there is none");
-        let help =
-            "make `metrics.series_every` or `metrics.sample_interval` less, or `metrics.series_every` 0 for no series";
-        Problem::new("metrics.series_every", message, help).with(&["metrics.sample_interval", "time_limit"])
-    })
 }

@@ -1,0 +1,471 @@
+//! What a scenario asks of a machine, before it is run: the memory that a trial takes and the events that it has, as upper
+//! bounds in closed form. What is too much is refused, what is much is warned of, each with the number and with the field to
+//! change.
+//!
+//! The bytes are of the command at its peak, the writing of the results included, as measured; they hold within a factor of
+//! about three where a scenario keeps what it may keep.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use super::checks::Problem;
+use super::{ProtocolConfig, Scenario, limits};
+use crate::engine::Span;
+use crate::faults::{LastsConfig, WhenConfig};
+use crate::motion::DeployConfig;
+use crate::protocol::detector::DetectorConfig;
+use crate::protocol::gossip::FanOutConfig;
+use crate::quantity::Finite;
+
+/// Bytes of the program itself.
+const PROGRAM: f64 = 30e6;
+/// Of a robot, its traffic by role and topic included.
+const ROBOT: f64 = 4000.0;
+/// Of an observer and a subject.
+const PAIR: f64 = 200.0;
+/// Of a copy under way.
+const COPY: f64 = 140.0;
+/// Of a status sent lately, and of a lost copy of it, in lists that double.
+const STATUS: f64 = 32.0;
+const LOST: f64 = 16.0;
+/// Of an interval that φ-accrual remembers.
+const INTERVAL: f64 = 16.0;
+/// Of a suspicion, a failed robot at an observer, a failure.
+const SUSPICION: f64 = 550.0;
+const OBSERVED: f64 = 250.0;
+const FAILURE: f64 = 1500.0;
+/// Of a sample, of a position in it, of an entry of the series, and of a topic in that.
+const SAMPLE: f64 = 400.0;
+const POSITION: f64 = 50.0;
+const ENTRY: f64 = 300.0;
+const TOPIC: f64 = 250.0;
+/// Of a finished trial that waits for the others, and the share of its records that it keeps.
+const TRIAL: f64 = 70_000.0;
+const KEPT: f64 = 0.3;
+/// Losses in a row that are counted one by one: where more are needed, this many already bound their probability.
+const COUNTED: f64 = 10_000.0;
+
+/// What a scenario asks of a machine.
+struct Needs {
+    shares: Vec<Share>,
+    /// Events of a trial: steps, ticks, frames and what robots hear of them.
+    events: f64,
+}
+
+/// A share of the memory.
+struct Share {
+    what: &'static str,
+    bytes: f64,
+    /// The field best changed, others that it depends on, and how.
+    field: &'static str,
+    also: &'static [&'static str],
+    help: &'static str,
+}
+
+/// What is more than a machine has.
+pub fn problems(scenario: &Scenario) -> Vec<Problem> {
+    let needs = Needs::of(scenario);
+    let memory = needs.memory(limits::MEMORY, "more than desim goes along with");
+    let time = needs.time(needs.events, limits::EVENTS, "a trial", "which would take weeks");
+    memory.into_iter().chain(time).collect()
+}
+
+/// What is much for a machine.
+pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
+    let needs = Needs::of(scenario);
+    let memory = needs.memory(
+        limits::MUCH_MEMORY,
+        "and so does each other trial that runs at the same time",
+    );
+    let all = needs.events * f64::from(scenario.trials);
+    let time = needs.time(all, limits::MANY_EVENTS, "all trials", "which may take days");
+    memory.into_iter().chain(time).collect()
+}
+
+impl Needs {
+    fn memory(&self, most: f64, verdict: &str) -> Option<Problem> {
+        let total = self.shares.iter().map(|share| share.bytes).sum::<f64>() + PROGRAM;
+        let largest = self.shares.iter().max_by(|a, b| a.bytes.total_cmp(&b.bytes))?;
+        (total > most).then(|| {
+            let message = format!(
+                "a trial may take {} of memory, {verdict}: {} of it for {}",
+                words(total),
+                words(largest.bytes),
+                largest.what
+            );
+            Problem::new(largest.field, message, largest.help).with(largest.also)
+        })
+    }
+
+    fn time(&self, events: f64, most: f64, whose: &str, verdict: &str) -> Option<Problem> {
+        (events > most).then(|| {
+            let message = format!("{whose} may have {events:.0e} events, {verdict}");
+            let help = "make `time_limit` shorter, what repeats less frequent, or the swarm smaller or thinner";
+            let also = ["swarm.robots", "control.period", "radio.range", "gossip", "trials"];
+            Problem::new("time_limit", message, help).with(&also)
+        })
+    }
+
+    fn of(scenario: &Scenario) -> Self {
+        let view = View::of(scenario);
+        let mut shares = vec![
+            Share {
+                what: "robots and whom they hear",
+                bytes: view.robots * ROBOT + view.pairs * (PAIR + view.window() * INTERVAL),
+                field: "swarm.robots",
+                also: &["radio.range", "swarm.deploy", "arena.size", "detector"],
+                help: "make `swarm.robots` fewer, or `radio.range` shorter",
+            },
+            Share {
+                what: "copies of frames under way",
+                bytes: view.copies() * COPY,
+                field: "radio.latency",
+                also: &["radio.range", "swarm.robots", "gossip", "protocol", "swarm.deploy"],
+                help: "make `radio.latency` or `radio.range` shorter, or what is sent less frequent",
+            },
+            Share {
+                what: "statuses that suspicions are traced to",
+                bytes: view.log(),
+                field: "detector",
+                also: &["gossip.status.interval", "swarm.robots", "radio.loss"],
+                help: "make `detector` less patient, or `gossip.status.interval` longer",
+            },
+            Share {
+                what: "suspicions",
+                bytes: view.suspicions() * SUSPICION,
+                field: "time_limit",
+                also: &["detector", "radio.loss", "swarm.robots", "gossip.status.interval"],
+                help: "make `time_limit` shorter, `detector` more patient, or fewer robots hear each other",
+            },
+            Share {
+                what: "failures and who notices them",
+                bytes: view.failures(),
+                field: "faults",
+                also: &["time_limit", "control.period", "swarm.robots"],
+                help: "make hazards smaller, failures longer, or `time_limit` shorter",
+            },
+            Share {
+                what: "samples and positions",
+                bytes: view.samples * (SAMPLE + view.robots * POSITION),
+                field: "metrics.sample_interval",
+                also: &["time_limit", "swarm.robots"],
+                help: "make `metrics.sample_interval` longer",
+            },
+            Share {
+                what: "the series of traffic",
+                bytes: view.entries() * (ENTRY + view.topics() * TOPIC),
+                field: "metrics.series_every",
+                also: &["metrics.sample_interval", "time_limit"],
+                help: "make `metrics.series_every` more, or 0 for no series",
+            },
+        ];
+        // What is kept of the other trials until all are there: not who hears whom, nor positions.
+        let records = view.suspicions() * SUSPICION
+            + view.failures()
+            + view.samples * SAMPLE
+            + view.entries() * (ENTRY + view.topics() * TOPIC)
+            + view.robots * ROBOT;
+        shares.push(Share {
+            what: "the other trials, until all are finished",
+            bytes: f64::from(scenario.trials - 1) * (TRIAL + KEPT * records),
+            field: "trials",
+            also: &["time_limit", "metrics.sample_interval", "swarm.robots"],
+            help: "make `trials` fewer, or what is kept of each less: `metrics.sample_interval` longer",
+        });
+        Self {
+            shares,
+            events: view.events(),
+        }
+    }
+}
+
+/// Bytes as people say them.
+fn words(bytes: f64) -> String {
+    match bytes {
+        ..1e9 => format!("{:.0} MB", bytes / 1e6),
+        ..1e12 => format!("{:.1} GB", bytes / 1e9),
+        _ => format!("{bytes:.1e} bytes"),
+    }
+}
+
+/// What several of these bounds need to know.
+struct View<'a> {
+    scenario: &'a Scenario,
+    robots: f64,
+    time_limit: f64,
+    /// Robots that hear a broadcast at the start.
+    neighbours: f64,
+    /// Ordered pairs of robots that hear each other at some time of a trial.
+    pairs: f64,
+    /// How often pairs come into each other's range in a trial.
+    meetings: f64,
+    samples: f64,
+    /// Seconds from one status of a robot to the next; none where it sends none.
+    status_s: Option<f64>,
+}
+
+impl<'a> View<'a> {
+    fn of(scenario: &'a Scenario) -> Self {
+        let robots = f64::from(scenario.swarm.robots);
+        let time_limit = scenario.time_limit.get();
+        let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
+        let neighbours = neighbours(scenario).min(robots - 1.0).max(0.0);
+        // What robots of speed v, 4/π as fast against each other, sweep with their range in a trial.
+        let swept = 2.0 * scenario.radio.range.get() * 4.0 / PI * scenario.wander.speed() * time_limit;
+        let met = robots * (robots - 1.0) * swept / (width * height);
+        let sample_interval = scenario.metrics.sample_interval.get();
+        let period = Span::from_secs(scenario.control.period.get());
+        let status_s = match scenario.protocol {
+            ProtocolConfig::Backbone(_) | ProtocolConfig::Heartbeat => {
+                Some((period * scenario.gossip.status.timing(period).every()).as_secs())
+            }
+            ProtocolConfig::Rumor(_) => None,
+        };
+        Self {
+            scenario,
+            robots,
+            time_limit,
+            neighbours,
+            pairs: (robots * neighbours + met).min(robots * (robots - 1.0)),
+            meetings: met,
+            samples: if sample_interval > 0.0 {
+                time_limit / sample_interval + 1.0
+            } else {
+                0.0
+            },
+            status_s,
+        }
+    }
+
+    fn moves(&self) -> bool {
+        match self.scenario.protocol {
+            ProtocolConfig::Backbone(_) => true,
+            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => self.scenario.wander.speed() > 0.0,
+        }
+    }
+
+    fn topics(&self) -> f64 {
+        (self.scenario.protocol.topics().len() + 1) as f64
+    }
+
+    fn entries(&self) -> f64 {
+        let every = f64::from(self.scenario.metrics.series_every);
+        if every > 0.0 { self.samples / every } else { 0.0 }
+    }
+
+    /// Intervals that a detector remembers of each robot.
+    fn window(&self) -> f64 {
+        match (&self.scenario.detector, self.status_s) {
+            (DetectorConfig::PhiAccrual(phi), Some(interval)) => {
+                f64::from(phi.window).min(self.time_limit / interval + 2.0)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Frames that a robot sends in a second.
+    fn rate(&self) -> f64 {
+        let gossip = &self.scenario.gossip;
+        let period = self.scenario.control.period.get();
+        let a_second = |interval: f64| 1.0 / interval.max(period);
+        let statuses = self.status_s.map_or(0.0, |interval| 1.0 / interval);
+        let own = match &self.scenario.protocol {
+            ProtocolConfig::Backbone(_) => {
+                let topics = [gossip.strand.interval, gossip.request.interval, gossip.relay.interval];
+                topics.iter().map(|interval| a_second(interval.get())).sum()
+            }
+            ProtocolConfig::Heartbeat => 0.0,
+            ProtocolConfig::Rumor(rumor) => {
+                let peers = match gossip.relay.fan_out {
+                    FanOutConfig::Everyone => 1.0,
+                    FanOutConfig::Peers(peers) => f64::from(peers),
+                };
+                let interval = gossip.relay.interval.get();
+                let rounds = if rumor.is_poisson() {
+                    1.0 / interval
+                } else {
+                    a_second(interval)
+                };
+                rounds * rumor.sources.rumors() as f64 * peers
+            }
+        };
+        statuses + own + self.probes()
+    }
+
+    /// Probes, their answers and those through others that a robot sends in a second.
+    fn probes(&self) -> f64 {
+        match (&self.scenario.detector, self.status_s) {
+            (DetectorConfig::Swim(swim), Some(_)) => {
+                (2.0 + 4.0 * f64::from(swim.indirect_checks)) / swim.probe_interval.get()
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Copies under way or waiting to be read at once: all that is sent within a latency and a control period, at least once.
+    fn copies(&self) -> f64 {
+        let latency = self.scenario.radio.latency.mean().min(self.time_limit);
+        let sent = self.rate() * (latency + self.scenario.control.period.get());
+        self.robots * self.neighbours * (1.0 + sent)
+    }
+
+    /// Bytes of the statuses of late.
+    fn log(&self) -> f64 {
+        let Some(interval) = self.status_s else { return 0.0 };
+        let silence = self.scenario.detector.longest_silence(self.scenario.circumstances());
+        let span = (3.0 * silence.as_secs()).min(self.time_limit);
+        let range = self.scenario.radio.range.get();
+        let lost = self.scenario.radio.loss.mean_loss(range, range);
+        self.robots * span / interval * (STATUS + self.neighbours * lost * LOST)
+    }
+
+    /// Suspicions of a trial: of robots in range by the losses that they take, of others once a meeting.
+    fn suspicions(&self) -> f64 {
+        let Some(interval) = self.status_s else { return 0.0 };
+        // Whoever moves may leave whom it heard from the start, too.
+        let parting = if self.moves() {
+            self.robots * self.neighbours
+        } else {
+            0.0
+        };
+        let once = parting + self.meetings;
+        let in_range = self.robots * self.neighbours * self.time_limit;
+        let scenario = self.scenario;
+        let often = match &scenario.detector {
+            DetectorConfig::Swim(swim) => {
+                let range = scenario.radio.range.get();
+                let failing = swim.probe_failure(scenario.radio.loss.mean_loss(range, range));
+                in_range * failing / swim.probe_interval.get()
+            }
+            detector => {
+                let silence = detector.shortest_silence(scenario.circumstances());
+                in_range * self.mistakes(interval, silence.unwrap_or(Span::ZERO).as_secs())
+            }
+        };
+        once + often
+    }
+
+    /// Suspicions a second between two robots in range: an arrival, and then so many losses that the next one comes after
+    /// `silence`, or later by what latency varies.
+    fn mistakes(&self, interval: f64, silence: f64) -> f64 {
+        let radio = &self.scenario.radio;
+        let latencies = radio.latency.quantiles(200);
+        let spread = latencies[latencies.len() - 1] - latencies[0];
+        let losses = ((silence - spread) / interval - 1e-9).floor().clamp(0.0, COUNTED);
+        let range = radio.range.get();
+        // Where loss grows with distance, neither the nearest nor the farthest err most.
+        let distances = [0.25, 0.5, 0.75, 0.9, 1.0].map(|share| share * range);
+        let rates = distances.map(|distance| {
+            let chain = radio.loss.chain(distance, range);
+            let Some(mut run) = chain.after_arrival() else {
+                return 0.0;
+            };
+            for _ in 0..losses as u32 {
+                if run.probability() < f64::MIN_POSITIVE {
+                    break;
+                }
+                run.lose();
+            }
+            chain.arriving() * run.probability() / interval
+        });
+        rates.into_iter().fold(0.0, f64::max)
+    }
+
+    /// Bytes of the failures, of those who notice them, and of what becomes of their links.
+    fn failures(&self) -> f64 {
+        let steps = self.time_limit / self.scenario.control.period.get();
+        let counts = self.scenario.faults.iter().map(|fault| {
+            let Some(robots) = fault.of_robots() else { return 1.0 };
+            let again = match robots.lasts {
+                LastsConfig::ForGood => 1.0,
+                LastsConfig::For(seconds) => 1.0 + self.time_limit / seconds.get(),
+            };
+            let chances = match robots.when {
+                WhenConfig::At(_) => 1.0,
+                WhenConfig::Hazard { per_step, .. } => steps * per_step.get(),
+                // Roles are taken anew a few times in a trial, not in every step.
+                WhenConfig::OnJoin { probability, .. } => 100.0 * probability.get(),
+            };
+            self.robots * chances.min(again)
+        });
+        counts.sum::<f64>() * (FAILURE + self.neighbours * OBSERVED)
+    }
+
+    /// Events of a trial.
+    fn events(&self) -> f64 {
+        let scenario = self.scenario;
+        let steps = self.time_limit / scenario.control.period.get();
+        let ticks = self.time_limit / scenario.motion.tick.get();
+        let moved = if self.moves() { self.robots } else { 1.0 };
+        let sent = self.rate() * self.time_limit;
+        let sampled = self.samples * (1.0 + self.neighbours);
+        ticks * moved + self.robots * (steps + sent * (1.0 + self.neighbours) + sampled)
+    }
+}
+
+/// Places in the nine cells around each of `places`, on average, where cells are as wide as `range`: no fewer than lie within it.
+fn around(places: &[(Finite, Finite)], range: f64) -> f64 {
+    let cell = |metres: Finite| (metres.get() / range).floor().clamp(-1e15, 1e15) as i64;
+    let mut cells: BTreeMap<(i64, i64), f64> = BTreeMap::new();
+    for (x, y) in places {
+        *cells.entry((cell(*x), cell(*y))).or_default() += 1.0;
+    }
+    let pairs = cells.iter().map(|(&(x, y), here)| {
+        let near = (-1..=1).flat_map(|right| (-1..=1).map(move |up| (x + right, y + up)));
+        here * near.filter_map(|cell| cells.get(&cell)).sum::<f64>()
+    });
+    pairs.sum::<f64>() / (places.len() as f64).max(1.0)
+}
+
+/// Robots that hear a broadcast at the start, an upper bound: as dense as they are deployed, and never overlapping.
+fn neighbours(scenario: &Scenario) -> f64 {
+    let robots = f64::from(scenario.swarm.robots);
+    let range = scenario.radio.range.get();
+    let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
+    let packed = (range / scenario.motion.body_radius.get() + 1.0).powi(2);
+    let within = |area: f64| robots * PI * range * range / area;
+    let expected = match &scenario.swarm.deploy {
+        DeployConfig::Cluster { radius } => within((PI * radius.get() * radius.get()).min(width * height)),
+        DeployConfig::Uniform => within(width * height),
+        DeployConfig::At(places) => around(places, range),
+    };
+    expected.min(packed).min(robots)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::parse;
+
+    /// Of a small arena that is sampled only where that is what is looked at.
+    fn needs(sections: &str) -> f64 {
+        let text = format!("Scenario(name: \"a\", {sections})");
+        let scenario = parse("a.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"));
+        let needs = Needs::of(&scenario);
+        (needs.shares.iter().map(|share| share.bytes).sum::<f64>() + PROGRAM) / 1e6
+    }
+
+    /// Peak memory of the command as the system told it, MB, on 64 bits, of a run of each scenario with one thread.
+    #[test]
+    fn the_estimate_is_no_less_than_what_runs_took_and_no_more_than_three_times_as_much() {
+        let lossy = "arena: (size: (6.0, 6.0)), protocol: Heartbeat, detector: Timeout(0.15), radio: (loss: Bernoulli(0.5), latency: Constant(0.0))";
+        let still = "arena: (size: (6.0, 6.0)), protocol: Heartbeat";
+        let unsampled = "metrics: (sample_interval: 0.0)";
+        for (sections, measured) in [
+            (format!("time_limit: 200.0, swarm: (robots: 40, deploy: Uniform), {lossy}"), 101.0),
+            (format!("trials: 20, time_limit: 100.0, swarm: (robots: 40, deploy: Uniform), {lossy}, {unsampled}"), 297.0),
+            (format!("trials: 3000, time_limit: 1.0, swarm: (robots: 40, deploy: Uniform), {still}, control: (period: 1.0), {unsampled}"), 302.0),
+            (format!("time_limit: 500.0, swarm: (robots: 2, deploy: Uniform), {still}, metrics: (sample_interval: 0.001)"), 442.0),
+            (format!("time_limit: 1000.0, swarm: (robots: 2, deploy: Uniform), {still}, metrics: (sample_interval: 0.001, series_every: 0)"), 332.0),
+            ("time_limit: 100.0, swarm: (robots: 200, deploy: Uniform), arena: (size: (20.0, 20.0)), protocol: Heartbeat, gossip: (status: (interval: 10.0)), detector: Timeout(30.0), metrics: (sample_interval: 0.01, series_every: 0)".to_owned(), 91.0),
+            (format!("time_limit: 1.0, swarm: (robots: 20000, deploy: Uniform), arena: (size: (200.0, 200.0)), protocol: Heartbeat, {unsampled}"), 110.0),
+            (format!("time_limit: 1.0, swarm: (robots: 20000, deploy: Uniform), arena: (size: (60.0, 60.0)), protocol: Heartbeat, {unsampled}"), 509.0),
+            (format!("time_limit: 100.0, swarm: (robots: 100, deploy: Uniform), {still}, radio: (latency: Constant(50.0)), {unsampled}"), 214.0),
+            (format!("time_limit: 300.0, swarm: (robots: 300, deploy: Uniform), {still}, detector: PhiAccrual(dialect: Chitchat, window: 100000), {unsampled}"), 785.0),
+            (format!("time_limit: 2000.0, swarm: (robots: 300, deploy: Uniform), arena: (size: (30.0, 30.0)), wander: RandomWaypoint(speed: 0.3), motion: (max_speed: 0.3), gossip: (status: (interval: 1.0)), protocol: Heartbeat, detector: Timeout(3.0), {unsampled}"), 189.0),
+        ] {
+            let needs = needs(&sections);
+            assert!((measured..3.0 * measured).contains(&needs), "{sections}: {measured} MB measured, {needs:.0} MB estimated");
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Swarms whose robots stand too near, too far or too much apart.
+
+use crate::motion::DeployConfig;
+use crate::protocol::wander::WanderConfig;
+use crate::radio::LossConfig;
+use crate::scenario::checks::Problem;
+use crate::scenario::{ProtocolConfig, Scenario};
+
+/// By how many times a range may exceed the arena's diagonal before that is said.
+const FAR: f64 = 3.0;
+/// The share of trials that may begin in pieces before that is said: where robots must reach each other, and where it only
+/// shows in figures of connectivity.
+const IN_PIECES: f64 = 0.05;
+const MOSTLY_IN_PIECES: f64 = 0.5;
+
+/// What looks wrong with where robots are and how far they hear.
+pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
+    let mut found: Vec<Problem> = range(scenario).into_iter().collect();
+    found.extend(alone(scenario));
+    found.extend(cluster(scenario));
+    if found.is_empty() {
+        // Pieces say nothing new where nobody can hear anybody.
+        found.extend(deployment(scenario));
+    }
+    found
+}
+
+/// Ranges below what bodies keep apart, and far beyond the arena.
+fn range(scenario: &Scenario) -> Option<Problem> {
+    let range = scenario.radio.range.get();
+    let bodies = 2.0 * scenario.motion.body_radius.get();
+    if range < bodies {
+        let message =
+            format!("nobody ever hears anybody: bodies keep centres {bodies} m apart, and a radio reaches {range} m");
+        let help = "make `radio.range` greater, or `motion.body_radius` less";
+        return Some(Problem::new("radio.range", message, help).with(&["motion.body_radius"]));
+    }
+    let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
+    let diagonal = width.hypot(height);
+    // Loss by distance is stated against the range, which may then lie where nobody is.
+    let by_distance = matches!(scenario.radio.loss, LossConfig::Distance { .. });
+    (range > FAR * diagonal && !by_distance).then(|| {
+        let message = format!(
+            "a range of {range} m is far beyond the arena, whose diagonal is {diagonal:.1} m: everybody hears everybody"
+        );
+        let help = "make `radio.range` less, or `arena.size` greater";
+        Problem::new("radio.range", message, help).with(&["arena.size"])
+    })
+}
+
+fn alone(scenario: &Scenario) -> Option<Problem> {
+    (scenario.swarm.robots == 1).then(|| {
+        let message = "one robot alone hears nobody, and nobody hears it";
+        Problem::new("swarm.robots", message, "make it at least 2")
+    })
+}
+
+/// Clusters that the walls cut off.
+fn cluster(scenario: &Scenario) -> Option<Problem> {
+    let DeployConfig::Cluster { radius } = scenario.swarm.deploy else {
+        return None;
+    };
+    let radius = radius.get();
+    let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
+    let room = width.min(height) / 2.0 - scenario.motion.body_radius.get();
+    (radius > room).then(|| {
+        let message = format!("a cluster of radius {radius} m reaches beyond the walls, which leave {room} m: it is cut off there, and denser");
+        let help = "make its radius less, or `arena.size` greater";
+        Problem::new("swarm.deploy.Cluster.radius", message, help).with(&["arena.size", "motion.body_radius"])
+    })
+}
+
+/// Deployments that leave no room now and then, or that fall into pieces.
+fn deployment(scenario: &Scenario) -> Vec<Problem> {
+    let still = scenario.wander == WanderConfig::Still;
+    let by_chance = !matches!(scenario.swarm.deploy, DeployConfig::At(_));
+    let (bearable, what) = match scenario.protocol {
+        ProtocolConfig::Backbone(_) => (IN_PIECES, "robots out of reach of the root are never recruited"),
+        ProtocolConfig::Rumor(_) if still => (IN_PIECES, "a rumour stays in its own"),
+        ProtocolConfig::Heartbeat if still && by_chance => (MOSTLY_IN_PIECES, "robots hear only those of their own"),
+        ProtocolConfig::Rumor(_) | ProtocolConfig::Heartbeat => return Vec::new(),
+    };
+    let Some(survey) = scenario.site().survey(scenario.radio.range.get()) else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    let (trials, range) = (survey.trials, scenario.radio.range.get());
+    if survey.without_room > 0 {
+        let message = format!(
+            "robots find no room in trial {}, were there so many: random places fill up",
+            trials - 1
+        );
+        let help = "use fewer robots, or more room for them";
+        found.push(Problem::new("swarm.deploy", message, help).with(&["swarm.robots", "motion.body_radius"]));
+    }
+    if f64::from(survey.in_pieces) > bearable * f64::from(trials) {
+        let when = if by_chance {
+            format!("in {} of the first {trials} trials", survey.in_pieces)
+        } else {
+            "from the start".to_owned()
+        };
+        let message = format!("the swarm stands in pieces {when}, out of each other's range of {range} m: {what}");
+        let help = "make `radio.range` greater, or deploy more robots or nearer to each other";
+        let also = ["radio.range", "swarm.robots", "arena.size"];
+        found.push(Problem::new("swarm.deploy", message, help).with(&also));
+    }
+    found
+}
