@@ -108,6 +108,40 @@ fn assert_same_with_and_without_rounds(file: &str, overrides: &[&str]) {
     assert_eq!(in_rounds, one_by_one);
 }
 
+/// Latencies of ten milliseconds to the nanosecond, which is declared, or not.
+fn assert_same_at_the_very_lookahead(overrides: &[&str]) {
+    let [in_rounds, one_by_one] = ["Constant(0.01)", "Normal(mean: 0.01, std_dev: 1e-13, min: 0.0)"].map(|latency| {
+        let latency = format!("radio.latency={latency}");
+        let overrides: Vec<&str> = overrides
+            .iter()
+            .copied()
+            .chain([latency.as_str(), "control.phase=Random"])
+            .collect();
+        run(&scenario("loss20.ron", &overrides), 0, DriverKind::Inline)
+    });
+    assert!(in_rounds.ledger.iter().any(|topic| topic.delivered > 0));
+    assert_eq!(in_rounds, one_by_one);
+}
+
+/// What a robot sends may arrive at the end of the round that it was sent in, and not one nanosecond before.
+#[test]
+fn a_round_ends_where_the_first_frame_of_it_may_arrive() {
+    assert_same_at_the_very_lookahead(&["time_limit=12.0"]);
+    assert_same_at_the_very_lookahead(&[
+        "time_limit=10.0",
+        "protocol=Heartbeat",
+        "radio.loss=Bernoulli(0.6)",
+        "detector=Timeout(0.25)",
+    ]);
+}
+
+/// Neither a motion tick nor anything else happens when this run ends, in the middle of a round.
+#[test]
+fn a_round_ends_with_the_run() {
+    assert_same_with_and_without_rounds("loss20.ron", &["time_limit=11.0437"]);
+    assert_same_at_the_very_lookahead(&["time_limit=11.0437"]);
+}
+
 #[test]
 fn control_steps_taken_in_rounds_are_the_same_run_as_one_by_one() {
     assert_same_with_and_without_rounds("loss20.ron", &["time_limit=20.0"]);

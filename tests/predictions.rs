@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use desim::cli::check::{Say, check};
 use desim::metrics::Summary;
-use desim::predict::{Surprise, surprises};
+use desim::predict::{Preflight, Surprise, surprises};
 use desim::scenario::{Scenario, parse};
 use desim::simulation::{DriverKind, run_trial};
 use tokio_util::sync::CancellationToken;
@@ -50,6 +50,74 @@ fn robots_that_stand_still_do_as_predicted_under_independent_loss_and_under_burs
         let found = surprises(&scenario, &summary);
         assert!(found.is_empty(), "{radio}: {found:#?}");
     }
+}
+
+/// Fifteen robots that wander through each other's range, a status every half second and a timeout of 1.8 s.
+fn wandering(wander: &str, loss: &str) -> Scenario {
+    let text = format!(
+        "Scenario(name: \"wandering\", time_limit: 300.0, arena: (size: (5.0, 5.0)), swarm: (robots: 15, deploy: Uniform),
+         motion: (max_speed: 0.3), protocol: Heartbeat, wander: {wander}, gossip: (status: (interval: 0.5)),
+         detector: Timeout(1.8), radio: (loss: {loss}, latency: Constant(0.02)), metrics: (sample_interval: 0.0))"
+    );
+    parse("wandering.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
+}
+
+#[test]
+fn robots_that_wander_make_the_mistakes_predicted_of_robots_in_range_and_no_others() {
+    for wander in ["RandomWaypoint(speed: 0.03)", "RandomWalk(speed: 0.25, leg: 5.0)"] {
+        let scenario = wandering(wander, "Bernoulli(0.2)");
+        let summary = summary(&scenario, TRIALS);
+        let found = surprises(&scenario, &summary);
+        let ours = ["mistake_rate_hz", "mistake_duration_s", "query_accuracy"];
+        let of_detector: Vec<_> = found.iter().filter(|one| ours.contains(&one.predicted.name)).collect();
+        assert!(of_detector.is_empty(), "{wander}: {of_detector:#?}");
+        let other = names(&surprises(&wandering(wander, "Bernoulli(0.22)"), &summary));
+        for name in ["mistake_rate_hz", "query_accuracy"] {
+            assert!(
+                other.contains(&name),
+                "{wander}: a loss of 0.20 is not one of 0.22: {other:?}"
+            );
+        }
+    }
+}
+
+/// Robots that wake once a second, and whenever a timer of any neighbour fires: half a second to the next control step would be a
+/// third too long, and is not what is predicted.
+#[test]
+fn a_reader_that_other_neighbours_timers_wake_reads_as_soon_as_predicted() {
+    for (robots, timeout) in [(12, 2.5), (30, 2.5), (6, 1.7)] {
+        let text = format!(
+            "Scenario(name: \"seldom\", time_limit: 400.0, swarm: (robots: {robots}, deploy: Cluster(radius: 0.9)), protocol: Heartbeat,
+             control: (period: 1.0), motion: (tick: 0.1), gossip: (status: (interval: 1.0)), detector: Timeout({timeout:?}),
+             radio: (loss: Bernoulli(0.2), latency: Constant(0.05)), metrics: (sample_interval: 0.0))"
+        );
+        let scenario = parse("seldom.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"));
+        let summary = summary(&scenario, 2 * TRIALS);
+        let predicted = Preflight::of(&scenario);
+        let predicted = predicted.get("mistake_duration_s").unwrap();
+        let measured = summary.detection.mistake_duration_s.estimate;
+        println!(
+            "{robots} {timeout}: {} ± {}, {measured:?}",
+            predicted.value, predicted.accuracy
+        );
+        let found = surprises(&scenario, &summary);
+        assert!(found.is_empty(), "{robots} robots: {found:#?}");
+        let at_steps = ((timeout as f64).floor() + 1.25) - timeout + 0.5;
+        assert!(predicted.value + predicted.accuracy < at_steps - 0.02, "{predicted:?}");
+        assert!(measured.ci95[1] < Some(at_steps), "{measured:?}");
+    }
+}
+
+#[test]
+fn the_shipped_scenario_of_crashes_detects_them_when_its_prediction_says() {
+    let text = std::fs::read_to_string("scenarios/faults/crash_and_recover.ron").unwrap();
+    let scenario = parse("crash_and_recover.ron", &text, &[]).unwrap();
+    let summary = summary(&scenario, scenario.trials);
+    let time = summary.detection.detection_time_s.estimate;
+    println!("{time:?} {:?}", Preflight::of(&scenario).get("detection_time_s"));
+    assert!(time.value.is_some());
+    let found = names(&surprises(&scenario, &summary));
+    assert!(!found.contains(&"detection_time_s"), "{time:?}");
 }
 
 #[test]

@@ -410,6 +410,7 @@ fn robots(reports: Reports, poses: Vec<Pose>, steps: &[u64]) -> Vec<RobotState> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::faults::{Effect, Health};
     use crate::protocol::Role;
 
     const RANGE: f64 = 2.0;
@@ -517,6 +518,52 @@ mod tests {
             [1.0_f32, 0.0].map(f32::to_bits)
         );
         assert_eq!(record.robots[1].role, 1);
+    }
+
+    fn fails(recorder: &mut Recorder, seconds: f64, robot: u32, positions: &[Vec2]) {
+        let subject = Subject::Robot {
+            robot: ActorId(robot),
+            effect: Effect::Crash,
+            health: Health {
+                sends: false,
+                hears: false,
+                acts: false,
+            },
+        };
+        let change = Change {
+            fault: 0,
+            begins: true,
+            subject,
+        };
+        recorder.fault(SimTime::from_secs(seconds), &change, positions);
+    }
+
+    #[test]
+    fn the_graph_is_that_of_live_robots_and_of_nobody_nothing_is_said() {
+        let mut recorder = recorder(None);
+        let row = line(1.5);
+        recorder.sample(SimTime::ZERO, &row);
+        fails(&mut recorder, 0.5, 1, &row);
+        recorder.sample(SimTime::from_secs(1.0), &row);
+        fails(&mut recorder, 1.5, 2, &row);
+        recorder.sample(SimTime::from_secs(2.0), &row);
+        fails(&mut recorder, 2.5, 0, &row);
+        recorder.sample(SimTime::from_secs(3.0), &row);
+        let record = recorder.finish(end());
+        let components: Vec<u32> = record.connectivity.iter().map(|sample| sample.components).collect();
+        assert_eq!(components, [1, 2, 1, 0], "a path, its ends, one of them, nobody");
+        // Whose least λ₂ is that of the two ends, who are in two pieces; one robot has none.
+        assert_eq!(record.lambda2_min(), Some(0.0));
+        assert_eq!(record.connected_share(), Some(2.0 / 3.0), "nobody is not in one piece");
+
+        let mut whole = self::recorder(None);
+        whole.sample(SimTime::ZERO, &line(0.5));
+        fails(&mut whole, 0.5, 1, &row);
+        whole.sample(SimTime::from_secs(1.0), &line(0.5));
+        fails(&mut whole, 1.5, 2, &row);
+        whole.sample(SimTime::from_secs(2.0), &line(0.5));
+        let least = whole.finish(end()).lambda2_min().unwrap();
+        assert!((least - 2.0).abs() < 1e-9, "two robots that hear each other: {least}");
     }
 
     #[test]

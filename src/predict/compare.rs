@@ -36,7 +36,7 @@ pub fn surprises(scenario: &Scenario, summary: &Summary) -> Vec<Surprise> {
     }
     let preflight = Preflight::lasting(scenario, summary.simulated_s.value / summary.trials as f64);
     let scene = Scene::of(scenario, scenario.time_limit.get());
-    let compared: Vec<(&Prediction, Compared)> = preflight
+    let compared: Vec<(&Prediction, Estimate)> = preflight
         .predictions
         .iter()
         .filter_map(|prediction| Some((prediction, compared(prediction, summary)?)))
@@ -44,10 +44,8 @@ pub fn surprises(scenario: &Scenario, summary: &Summary) -> Vec<Surprise> {
     let family = compared.len();
     compared
         .into_iter()
-        .filter(|(prediction, Compared { measured, slack })| {
-            !agrees(prediction.value, prediction.accuracy + slack, measured, family)
-        })
-        .map(|(prediction, Compared { measured, .. })| Surprise {
+        .filter(|(prediction, measured)| !agrees(prediction.value, prediction.accuracy, measured, family))
+        .map(|(prediction, measured)| Surprise {
             predicted: prediction.clone(),
             measured,
             why: explanation(prediction.name, &scene, summary),
@@ -55,48 +53,31 @@ pub fn surprises(scenario: &Scenario, summary: &Summary) -> Vec<Surprise> {
         .collect()
 }
 
-/// A figure of a run, and what it may be off for reasons of its own.
-struct Compared {
-    measured: Estimate,
-    slack: f64,
-}
-
 /// The figure that `prediction` is about, if it should hold for the run.
-fn compared(prediction: &Prediction, summary: &Summary) -> Option<Compared> {
+fn compared(prediction: &Prediction, summary: &Summary) -> Option<Estimate> {
     let detection = &summary.detection;
-    let throughout = prediction.holds == Holds::Throughout;
-    let plain = |measured: Estimate| throughout.then_some(Compared { measured, slack: 0.0 });
-    match prediction.name {
-        "loss_ratio" => plain(lost(summary)),
-        "latency_s" => plain(summary.latency_s.mean),
-        "status_tx_bytes_per_step" => plain(status(summary)?.directions.tx_bytes_per_step.mean),
-        "status_rx_bytes_per_step" => plain(status(summary)?.directions.rx_bytes_per_step.mean),
+    // Detectors are judged by the time in which robots are in range of each other, so that what holds of those holds of the run.
+    let holds = match prediction.holds {
+        Holds::Throughout | Holds::InRange => true,
+        Holds::AtStart | Holds::AtEnd => false,
+    };
+    let mistakes = detection.mistakes.value as f64;
+    let made = mistakes >= FEWEST_MISTAKES;
+    let measured = match prediction.name {
+        "loss_ratio" => Some(lost(summary)),
+        "latency_s" => Some(summary.latency_s.mean),
+        "status_tx_bytes_per_step" => Some(status(summary)?.directions.tx_bytes_per_step.mean),
+        "status_rx_bytes_per_step" => Some(status(summary)?.directions.rx_bytes_per_step.mean),
         "mistake_rate_hz" => {
-            let monitored = detection.monitored_s.value;
-            let expected = prediction.value * monitored;
-            let made = detection.mistakes.value as f64;
-            let tells = expected.max(made) >= FEWEST_MISTAKES;
-            // A robot that leaves the range may count as a mistake or not, as losses have it.
-            let left = *by_verdict(summary, "out_of_range")? as f64 / monitored;
-            let (holds, slack) = match prediction.holds {
-                Holds::Throughout => (true, 0.0),
-                Holds::InRange => (true, left),
-                Holds::AtStart | Holds::AtEnd => (false, 0.0),
-            };
-            (holds && tells).then_some(Compared {
-                measured: detection.mistake_rate_hz.estimate,
-                slack,
-            })
+            let expected = prediction.value * detection.monitored_s.value;
+            (expected.max(mistakes) >= FEWEST_MISTAKES).then_some(detection.mistake_rate_hz.estimate)
         }
-        "mistake_duration_s" if detection.mistakes.value as f64 >= FEWEST_MISTAKES => {
-            plain(detection.mistake_duration_s.estimate)
-        }
-        "query_accuracy" if detection.mistakes.value as f64 >= FEWEST_MISTAKES => {
-            plain(detection.query_accuracy.estimate)
-        }
-        "detection_time_s" => plain(detection.detection_time_s.estimate),
+        "mistake_duration_s" => made.then_some(detection.mistake_duration_s.estimate),
+        "query_accuracy" => made.then_some(detection.query_accuracy.estimate),
+        "detection_time_s" => Some(detection.detection_time_s.estimate),
         _ => None,
-    }
+    };
+    measured.filter(|_| holds)
 }
 
 /// The share of copies lost.
@@ -117,14 +98,6 @@ fn status(summary: &Summary) -> Option<&TopicBandwidth> {
         .clone()
         .find(|(topic, _)| topic == "status")
         .map(|(_, bandwidth)| bandwidth)
-}
-
-fn by_verdict<'a>(summary: &'a Summary, verdict: &str) -> Option<&'a u64> {
-    let verdicts = summary.detection.suspicions.by_verdict.0.iter();
-    verdicts
-        .clone()
-        .find(|(name, _)| name == verdict)
-        .map(|(_, number)| number)
 }
 
 /// Whether a prediction is within `accuracy` of the interval of one of `family` figures.
@@ -174,13 +147,41 @@ fn explanation(name: &str, scene: &Scene<'_>, summary: &Summary) -> String {
     {
         reasons.push("robots failed, and who fails neither sends nor hears as before".to_owned());
     }
-    if of_losses && !scene.stands_still() {
+    let moves = matches!(name, "loss_ratio" | "status_rx_bytes_per_step");
+    if moves && !scene.stands_still() {
         reasons.push("robots moved, and neighbours with them".to_owned());
     }
+    reasons.extend(cut_off(name, summary));
     if reasons.is_empty() {
         "nothing in the run explains it: the model and its closed form may differ".to_owned()
     } else {
         reasons.join("; ")
+    }
+}
+
+/// What the end of the run has to do with it.
+fn cut_off(name: &str, summary: &Summary) -> Option<String> {
+    let fates = &summary.frames.total;
+    let detection = &summary.detection;
+    let share = |part: u64, all: u64| 100.0 * part as f64 / all as f64;
+    match name {
+        "loss_ratio" | "latency_s" | "status_rx_bytes_per_step" if fates.in_flight > 0 => {
+            let share = share(fates.in_flight, fates.offered);
+            Some(format!("copies were still under way at the end ({share:.2} %)"))
+        }
+        "detection_time_s" if detection.detection_time_s.cut_off > 0 => {
+            let share = share(detection.detection_time_s.cut_off, detection.failures.observed);
+            Some(format!(
+                "failures ended, or the run, before they were detected ({share:.2} %)"
+            ))
+        }
+        "mistake_duration_s" | "query_accuracy" if detection.mistake_duration_s.cut_off > 0 => {
+            let share = share(detection.mistake_duration_s.cut_off, detection.mistakes.value);
+            Some(format!(
+                "mistakes were cut off before they ended in trust ({share:.2} %)"
+            ))
+        }
+        _ => None,
     }
 }
 

@@ -1,5 +1,7 @@
 //! Predictions for whole scenarios.
 
+use proptest::prelude::*;
+
 use super::*;
 use crate::protocol::detector::Link;
 use crate::scenario::parse;
@@ -170,4 +172,103 @@ fn everything_predicted_is_a_finite_number_in_json() {
             "{loss}: {all:?}"
         );
     }
+}
+
+/// At 0.1 s a timeout of 10⁹ s waits for 10¹⁰ statuses; T_D is TO + d less half an interval and what was lost before.
+#[test]
+fn the_longest_timeout_is_predicted_at_once_and_right() {
+    let text = ROW
+        .replace("Timeout(3.5)", "Timeout(1e9)")
+        .replace("interval: 1.0", "interval: 0.5");
+    let text = text.replace("phase: Together", "phase: Random");
+    let expected = preflight(&format!(
+        "{text}, radio: (loss: Bernoulli(0.2), latency: Constant(0.05))"
+    ));
+    assert_value(&expected, "mistake_rate_hz", 0.0);
+    assert_value(&expected, "query_accuracy", 1.0);
+    assert_value(&expected, "detection_time_s", 1e9 + 0.05 - 0.5 * (0.5 + 0.25));
+    assert!(expected.get("mistake_recurrence_s").is_none());
+}
+
+/// Anything from 10⁻⁶ to 10¹², most of it strange.
+fn wild() -> impl Strategy<Value = f64> {
+    (-6.0..12.0_f64).prop_map(|exponent| 10_f64.powf(exponent))
+}
+
+fn share() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        Just(0.0),
+        Just(1.0),
+        0.0..1.0_f64,
+        (-12.0..0.0_f64).prop_map(|exponent| 10_f64.powf(exponent)),
+        (-12.0..0.0_f64).prop_map(|exponent| 1.0 - 10_f64.powf(exponent))
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Whatever is accepted is predicted, and in no time: steps that grew with the timeout would not end.
+    #[test]
+    fn whatever_is_accepted_is_predicted_in_finite_numbers(
+        [silence, interval, first, second, range] in prop::array::uniform5(wild()),
+        [p, q, r, s] in prop::array::uniform4(share()),
+        kinds in (0..6_usize, 0..4_usize, 0..6_usize), robots in 1_u32..1_000_000,
+        period in prop_oneof![Just(0.1), Just(1.0), Just(100.0)], together: bool, wakes: bool,
+    ) {
+        let silence = silence.max(1.001 * interval);
+        let detector = [
+            format!("Timeout({silence:e})"), format!("NfdS(shift: {silence:e})"),
+            format!("PhiAccrual(dialect: Akka, threshold: {silence:e})"), "Swim()".to_owned(), "None".to_owned(),
+            format!("Swim(leave_timeout: {silence:e})"),
+        ];
+        let loss = [
+            format!("Bernoulli({p:e})"), format!("GilbertElliott(good_to_bad: {p:e}, bad_to_good: {q:e}, good_loss: {r:e}, bad_loss: {s:e})"),
+            format!("Distance(at_range: {p:e}, exponent: {first:e})"), "None".to_owned(),
+        ];
+        let latency = [
+            format!("Constant({first:e})"), format!("Uniform(min: 0.0, max: {first:e})"),
+            format!("Normal(mean: {first:e}, std_dev: {second:e}, min: 0.0)"), format!("LogNormal(median: {first:e}, sigma: {p:e})"),
+            format!("Gamma(shape: {second:e}, scale: {first:e})"), format!("Exponential(mean: {first:e})"),
+        ];
+        let phase = if together { "Together" } else { "Random" };
+        let wake = if wakes { "OnReception" } else { "ControlStep" };
+        let text = format!(
+            "Scenario(name: \"wild\", time_limit: 1000.0, swarm: (robots: {robots}, deploy: Uniform), arena: (size: (1e4, 1e4)),
+             protocol: Heartbeat, control: (period: {period:?}, phase: {phase}, wake: {wake}),
+             gossip: (status: (interval: {interval:e})), detector: {},
+             radio: (range: {:e}, loss: {}, latency: {}), metrics: (sample_interval: 0.0))",
+            detector[kinds.0], range.min(1e4), loss[kinds.1], latency[kinds.2]
+        );
+        if let Ok(scenario) = parse("wild.ron", &text, &[]) {
+            for found in Preflight::of(&scenario).predictions {
+                prop_assert!(found.value.is_finite() && found.accuracy.is_finite() && found.accuracy >= 0.0, "{}: {:?}", text, found);
+                let probability = matches!(found.name, "query_accuracy" | "loss_ratio");
+                prop_assert!(!probability || (-1e-9..=1.0 + 1e-9).contains(&found.value), "{}: {:?}", text, found);
+                prop_assert!(found.value >= -1e-9, "{}: {:?}", text, found);
+            }
+        }
+    }
+}
+
+#[test]
+fn of_a_detector_that_is_none_nothing_is_predicted_and_the_backbone_does_not_run_with_it() {
+    let expected = preflight(&ROW.replace("Timeout(3.5)", "None"));
+    assert!(
+        ["mistake_rate_hz", "query_accuracy", "detection_time_s"]
+            .iter()
+            .all(|name| expected.get(name).is_none())
+    );
+    let refused = expected
+        .not_predicted
+        .iter()
+        .find(|refused| refused.name == "detection");
+    assert!(
+        refused.is_some_and(|refused| refused.why.contains("no failure detector")),
+        "{refused:?}"
+    );
+    let backbone = "Scenario(name: \"bare\", time_limit: 9.0, swarm: (robots: 9, deploy: Uniform), detector: None,
+        protocol: Backbone(targets: Ring(count: 1, radius: 3.0, links: 1)))";
+    let report = parse("bare.ron", backbone, &[]).unwrap_err().to_string();
+    assert!(report.contains("the backbone needs a failure detector"), "{report}");
 }

@@ -76,3 +76,93 @@ fn receptions<M>(input: &Input<M>) -> u64 {
         (hash ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use rand_philox::Philox;
+
+    use super::*;
+    use crate::faults::{Effect, Health};
+    use crate::geometry::{Pose, Vec2};
+    use crate::protocol::{Frame, MessageSize, Reception, TimerId};
+
+    fn reception(at: u64, sequence: u32) -> Reception<()> {
+        Reception {
+            at: SimTime::from_nanos(at),
+            frame: Frame {
+                sender: ActorId(3),
+                sequence,
+                sent_at: SimTime::ZERO,
+                size: MessageSize::alone(4),
+                message: (),
+            },
+            displacement: [0.0; 2],
+        }
+    }
+
+    fn digest(change: impl FnOnce(&mut Digest, &mut Input<()>, &mut Output<()>)) -> u128 {
+        let mut input = Input {
+            wake: Wake::ControlStep,
+            inbox: vec![reception(5, 1), reception(6, 2)],
+            pose: Pose::default(),
+            proximity: Vec::new(),
+            random: Philox::from_u64_seed(1),
+        };
+        let (mut digest, mut output) = (Digest::new(), Output::default());
+        change(&mut digest, &mut input, &mut output);
+        digest.wake(SimTime::from_nanos(7), ActorId(1), &input, &output);
+        digest.finish()
+    }
+
+    /// One run against others that differ from it in one thing each.
+    #[test]
+    fn whatever_a_robot_is_told_and_answers_changes_the_digest() {
+        let timer = |id, due: Option<u64>| {
+            move |_: &mut Digest, _: &mut Input<()>, output: &mut Output<()>| {
+                output.timers.push((TimerId(id), due.map(SimTime::from_nanos)));
+            }
+        };
+        let fault = |begins| {
+            move |digest: &mut Digest, _: &mut Input<()>, _: &mut Output<()>| {
+                let subject = Subject::Robot {
+                    robot: ActorId(2),
+                    effect: Effect::Mute,
+                    health: Health::WELL,
+                };
+                let change = Change {
+                    fault: 0,
+                    begins,
+                    subject,
+                };
+                digest.fault(SimTime::from_nanos(4), &change);
+            }
+        };
+        let mut digests = vec![
+            digest(|_, _, _| {}),
+            digest(timer(0, Some(9))),
+            digest(timer(0, Some(10))),
+            digest(timer(1, Some(9))),
+            digest(timer(0, None)),
+            digest(|_, input, _| input.wake = Wake::Reception),
+            digest(|_, input, _| input.wake = Wake::Timer(TimerId(0))),
+            digest(|_, input, _| input.pose.position.x = 1.0),
+            digest(|_, input, _| input.pose.position.y = 1.0),
+            digest(|_, input, _| input.pose.heading = 1.0),
+            digest(|_, input, _| input.inbox[1].at = SimTime::from_nanos(8)),
+            digest(|_, input, _| input.inbox[1].frame.sequence = 9),
+            digest(|_, input, _| input.inbox[1].frame.sender = ActorId(4)),
+            digest(|_, input, _| input.inbox.truncate(1)),
+            digest(|_, _, output| output.velocity = Some(Vec2::zeros())),
+            digest(|_, _, output| output.velocity = Some(Vec2::x())),
+            digest(|_, _, output| output.velocity = Some(Vec2::y())),
+            digest(|digest, _, _| digest.payload(&[1])),
+            digest(|digest, _, _| digest.payload(&[2])),
+            digest(fault(true)),
+            digest(fault(false)),
+        ];
+        let number = digests.len();
+        digests.sort_unstable();
+        digests.dedup();
+        assert_eq!(digests.len(), number);
+    }
+}

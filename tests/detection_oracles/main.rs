@@ -5,6 +5,7 @@
 mod missions;
 mod moving;
 mod nfd_s;
+mod none;
 mod phi;
 mod swim;
 mod timeout;

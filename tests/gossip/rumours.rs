@@ -2,7 +2,7 @@
 //! The times between one and the next are exponential, so T is a sum of independent exponentials with the means
 //! (N − 1) / (β (1 − p) n (N − n)), n = 1 to N − 1: its mean is their sum, its variance the sum of their squares.
 
-use desim::metrics::{Outcome, TopicFates, TrialRecord};
+use desim::metrics::{Outcome, Summary, TopicFates, TrialRecord};
 use desim::scenario::Scenario;
 
 use super::run;
@@ -132,4 +132,27 @@ fn a_rumour_is_not_known_to_all_while_nobody_is_alive() {
             assert!(record.spread[0].informed.iter().all(Option::is_some));
         }
     }
+}
+
+/// Robots 5 and 6 crash at the start, and stay so: they learn nothing, and nobody waits for them. Then all crash.
+#[test]
+fn robots_that_are_down_at_the_end_count_neither_among_the_informed_nor_among_those_to_be() {
+    let summary = |robots: &str| {
+        let faults = format!("faults: [Crash(robots: {robots}, at: 0.001)]");
+        let scenario = scenario(&format!(
+            "protocol: Rumor(), gossip: (relay: (interval: 0.1)), {faults}"
+        ));
+        let records = run(&scenario, 4);
+        let unaware = |record: &TrialRecord| record.spread[0].informed.iter().any(Option::is_none);
+        assert!(records.iter().all(unaware));
+        Summary::of("down", scenario.protocol.topics(), &["ignorant", "knowing"], &records)
+    };
+    let spread = summary("[5, 6]").spread.expect("rumours spread");
+    assert_eq!(spread.informed_ratio.estimate.value, Some(1.0));
+    assert!(spread.time_to_all.median.value.is_some());
+    let everybody: Vec<u32> = (0..ROBOTS).collect();
+    assert!(
+        summary(&format!("{everybody:?}")).spread.is_none(),
+        "of nobody nothing is said"
+    );
 }

@@ -105,6 +105,31 @@ fn what_is_not_as_predicted_has_a_section_of_its_own() {
 }
 
 #[test]
+fn a_report_of_robots_without_a_failure_detector_says_so_instead_of_figures() {
+    let summary = Summary::of("bare", &TOPICS, &ROLES, &records(2));
+    let text = terminal(&Input {
+        question: None,
+        summary: &summary,
+        asked: None,
+        control_period_s: 0.1,
+        detects: false,
+        surprises: &[],
+        speed: Speed {
+            simulated_s: 1.0,
+            delivered: 1,
+            wall_s: 1.0,
+        },
+        folder: Path::new("results/bare"),
+        files: &[],
+        style: Style::PLAIN,
+    });
+    assert!(
+        text.contains("none: robots ran no failure detector") && !text.contains("suspicions"),
+        "{text}"
+    );
+}
+
+#[test]
 fn every_width_is_kept_and_used() {
     for trials in [1, 35, 2000] {
         for width in [60, 80, 100, 120, 160] {

@@ -249,7 +249,9 @@ impl Scorer {
         let pair = find(&mut self.pairs, observer, subject);
         pair.settle(at, &mut self.tally);
         pair.suspicion = Some(next_place(&self.tally.suspicions));
-        pair.mistaken = suspicion.verdict() == Verdict::Mistake;
+        // One that they brought with them is a mistake once they have been in range for long enough.
+        let brought = able && (at..SimTime::NEVER).contains(&pair.settled);
+        pair.mistaken = brought || suspicion.verdict() == Verdict::Mistake;
         self.tally.suspicions.push(suspicion);
         pair.resume(at, able);
     }

@@ -234,6 +234,43 @@ mod tests {
         assert_close(quality.longest_detection_s, 3.5, 1e-9);
     }
 
+    /// Against the sum over u and k itself, and where that would take for ever.
+    #[test]
+    fn the_time_to_detect_a_failure_is_its_sum_for_any_timeout_and_any_loss() {
+        for (p, r, timeout) in [
+            (0.2, 0.8, 3.5),
+            (0.05, 0.2, 7.3),
+            (0.9, 0.01, 20.0),
+            (0.3, 0.4, 0.6),
+            (0.5, 0.0, 4.0),
+        ] {
+            let link = Link {
+                interval_s: 0.5,
+                good_to_bad: p,
+                bad_to_good: r,
+                latency_s: 0.1,
+            };
+            let mut chance = 1.0 - link.loss();
+            let mut sum = 0.0;
+            for lost in 0..60 {
+                let left = (timeout + 0.1 - 0.5 * f64::from(lost)).max(0.0);
+                sum += chance * (left.powi(2) - (left - 0.5).max(0.0).powi(2)) / (2.0 * 0.5);
+                chance *= if lost == 0 { p } else { 1.0 - r };
+            }
+            let quality = super::detection_time(timeout + 0.1, &link);
+            assert_close(quality, sum, 1e-9);
+        }
+        let bursts = Link {
+            interval_s: 0.1,
+            good_to_bad: 1e-9,
+            bad_to_good: 1e-9,
+            latency_s: 0.0,
+        };
+        assert!(timeout(1e9).quality(&bursts).unwrap().detection_time_s.is_finite());
+        let quality = nfd_s_quality(0.1, 1e9, |x| if x >= 0.05 { 1.0 - 1e-9 } else { 0.0 });
+        assert_close(quality.detection_time_s / 1e9, 1.0, 1e-6);
+    }
+
     #[test]
     fn without_loss_nothing_is_mistaken_and_the_accuracy_is_one() {
         let link = Link::independent(1.0, 0.0, 0.0);

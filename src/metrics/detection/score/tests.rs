@@ -321,6 +321,16 @@ fn a_silence_that_began_before_the_two_met_again_is_not_the_detectors() {
     let (record, _) = bench.outcomes();
     assert_eq!(record.suspicions[0].verdict(), Verdict::OutOfRange);
     assert_time(&record, 6.5 + 19.0, 0.0);
+
+    let mut longer = Bench::new();
+    longer.cross(7.5, false);
+    longer.cross(8.5, true);
+    longer.lose(9..12);
+    longer.suspect(9.5, 7);
+    longer.trust(12.0);
+    let (record, _) = longer.outcomes();
+    assert_eq!(record.suspicions[0].duration, None);
+    assert_time(&record, 6.5 + 19.0, 1.0);
 }
 
 #[test]
@@ -353,6 +363,12 @@ fn a_failure_out_of_range_is_observed_by_nobody_and_one_in_range_is_followed_whe
     away.0.fault(at(9.0), SUBJECT, MUTE);
     away.suspect(10.5, 8);
     assert_eq!(away.outcomes().1, []);
+
+    let mut met_just_now = Bench::new();
+    met_just_now.cross(8.0, false);
+    met_just_now.cross(8.5, true);
+    met_just_now.0.fault(at(9.0), SUBJECT, MUTE);
+    assert_eq!(met_just_now.outcomes().1, []);
 
     let mut near = Bench::new();
     near.0.fault(at(9.0), SUBJECT, MUTE);
