@@ -48,7 +48,7 @@ pub fn comparison(input: &ComparisonInput) -> String {
     page.entry("results", &shown(input.folder));
     page.entry("", &input.files.join(", "));
     page.gap();
-    page.words("Figures in brackets are 95 % intervals over trials (BCa bootstrap; Greenwood for medians of what may be cut off).");
+    page.words("Figures in brackets are 95 % intervals over trials.");
     page.text()
 }
 
