@@ -56,13 +56,13 @@ pub fn columns(text: &str) -> usize {
     text.width()
 }
 
-/// Breaks `words` at blanks, and between letters of double width, into lines of at most `width` columns; a longer word
-/// stands alone.
+/// Breaks `words` at blanks, but not before a percent sign, and between letters of double width, into lines of at most `width`
+/// columns; a longer word stands alone.
 #[must_use]
 pub fn wrap(words: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let mut room = 0;
-    for word in words.split(' ').filter(|word| !word.is_empty()) {
+    for word in bound(words) {
         let mut blank = " ";
         for piece in pieces(word) {
             let taken = columns(piece) + blank.len();
@@ -81,6 +81,25 @@ pub fn wrap(words: &str, width: usize) -> Vec<String> {
         }
     }
     lines
+}
+
+/// The words, a number and its percent sign being one.
+fn bound(words: &str) -> Vec<&str> {
+    let mut bound: Vec<&str> = Vec::new();
+    let mut start = 0;
+    for word in words.split(' ') {
+        let end = start + word.len();
+        match bound.last_mut() {
+            Some(last) if word.starts_with('%') => {
+                let begin = start - 1 - last.len();
+                *last = &words[begin..end];
+            }
+            _ => bound.push(word),
+        }
+        start = end + 1;
+    }
+    bound.retain(|word| !word.is_empty());
+    bound
 }
 
 fn clean_but<'a>(text: &'a str, kept: &[char]) -> Cow<'a, str> {
@@ -147,6 +166,7 @@ mod tests {
         // Combining accents take none.
         assert_eq!(wrap("e\u{301}e\u{301} e\u{301}", 4), ["e\u{301}e\u{301} e\u{301}"]);
         assert_eq!(wrap("a-word-that-is-long x", 5), ["a-word-that-is-long", "x"]);
+        assert_eq!(wrap("about 5.00 %, or", 10), ["about", "5.00 %, or"]);
     }
 
     proptest! {

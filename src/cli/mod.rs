@@ -31,6 +31,8 @@ use report::ReportArguments;
 use scenario::ScenarioArguments;
 use shown::Format;
 
+use crate::text::clean_lines;
+
 /// What the user asks for.
 #[derive(Debug, Parser)]
 #[command(name = "desim", version, about, long_about = LONG_ABOUT, after_help = EXIT_STATUS)]
@@ -123,7 +125,9 @@ pub fn arguments(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, E
     };
     let text = error.render();
     if error.use_stderr() {
-        output::say(&text.to_string());
+        // It is laid out, but holds what was asked for.
+        let text = text.to_string();
+        let _ = output::stderr().write_all(clean_lines(&text).as_bytes());
         return Err(FAULTY_INPUT.into());
     }
     let text = if style.colour {

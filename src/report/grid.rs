@@ -5,6 +5,8 @@ use crate::text::{clean, columns, wrap};
 
 /// Columns between two columns.
 const GAP: usize = 2;
+/// Words of a row that take no more columns are not broken.
+const SHORT: usize = 16;
 
 /// How a column is laid out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,8 +75,11 @@ impl Grid {
         for (row, cells) in self.rows.iter().enumerate() {
             for line in cells.get(column).into_iter().flatten() {
                 let whole = columns(line);
-                let is_broken = row == 0 || self.columns[column] == Column::Words;
-                let least = if is_broken { widest_word(line) } else { whole };
+                let least = match self.columns[column] {
+                    _ if row == 0 => widest_word(line),
+                    Column::Words => widest_word(line).max(whole.min(SHORT)),
+                    Column::Figures => whole,
+                };
                 width.least = width.least.max(least);
                 width.most = width.most.max(whole);
             }
@@ -199,19 +204,31 @@ mod tests {
 
     #[test]
     fn words_are_broken_before_a_table_is_and_figures_never() {
-        insta::assert_snapshot!(shown(&grid(), 50), @r"
-                                sent  received  lost
-                               least      by a
-                                         robot
-        ─────────────────────────────────────────────
-          parent  1,234 [1,200, 1,300]         7     –
-          strand
+        insta::assert_snapshot!(shown(&grid(), 54), @r"
+                                         sent  received  lost
+                                        least      by a
+                                                  robot
+        ─────────────────────────────────────────────────────
+          parent strand  1,234 [1,200, 1,300]         7     –
+          漢字                              2   345,678  12 %
         ");
     }
 
     #[test]
     fn a_table_too_wide_goes_on_below() {
-        insta::assert_snapshot!(shown(&grid(), 34), @r"");
+        insta::assert_snapshot!(shown(&grid(), 37), @r"
+                                         sent
+                                        least
+        ─────────────────────────────────────
+          parent strand  1,234 [1,200, 1,300]
+          漢字                              2
+
+                         received by a  lost
+                                 robot
+        ────────────────────────────────────
+          parent strand              7     –
+          漢字                 345,678  12 %
+        ");
     }
 
     proptest! {

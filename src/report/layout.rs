@@ -122,6 +122,10 @@ pub fn message(words: &str, width: Option<usize>) -> String {
     };
     let mut page = Page::new(Style { colour: false, width });
     for line in words.lines() {
+        if columns(line) <= width {
+            page.put(line);
+            continue;
+        }
         let indent = " ".repeat(line.len() - line.trim_start_matches(' ').len());
         page.paragraph(&indent, &format!("{indent}  "), line);
     }

@@ -13,9 +13,6 @@ use crate::text::{Style, clean, clean_lines, columns};
 /// Longest line that is shown around an error, bytes.
 const LONGEST_LINE: usize = 400;
 
-/// Columns that a report takes before a line, most of all.
-const GUTTER: usize = 9;
-
 /// One thing that is wrong, or looks so, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -107,14 +104,16 @@ impl Drawn {
             message: clean_lines(&message).into_owned(),
             help: diagnostic.help.as_ref().map(|help| clean_lines(help).into_owned()),
             severity,
-            source: shown.map(|place| source(place, width.saturating_sub(GUTTER))),
+            source: shown.map(|place| source(place, width)),
         }
     }
 }
 
 /// The text of a place and its label, lines cut off where there are no columns for them, but not before the label's end. Signs are
 /// longer than what they stand for, so the span is counted again.
-fn source(place: &Place, room: usize) -> (NamedSource<String>, LabeledSpan) {
+fn source(place: &Place, width: usize) -> (NamedSource<String>, LabeledSpan) {
+    // Before each line stands its number, as wide as that of the next, and a bar.
+    let room = width.saturating_sub(" │ ".chars().count() + 1 + (place.line + 1).to_string().len());
     let Range { start, end } = place.span;
     let parts = [0..start, start..end, end..place.text.len()];
     let [before, within, after] = parts.map(|part| clean_lines(&place.text[part]));
