@@ -40,7 +40,7 @@ impl Workload {
             size: (side, side),
             ..ArenaConfig::default()
         };
-        let poses = deploy(
+        let mut poses = deploy(
             &DeployConfig::Uniform,
             &arena,
             robots,
@@ -48,29 +48,18 @@ impl Workload {
             &Streams::new(SEED, 0),
         )
         .expect("a square of this density has room");
-        let mut poses = poses;
-        match std::env::var("DESIM_ORDER").as_deref() {
-            Ok("random") => {
-                // deterministic shuffle
-                let mut state = 88172645463325252_u64;
-                for i in (1..poses.len()).rev() {
-                    state ^= state << 13;
-                    state ^= state >> 7;
-                    state ^= state << 17;
-                    poses.swap(i, (state % (i as u64 + 1)) as usize);
-                }
-            }
-            Ok("curve") => {
-                let spread =
-                    |c: u16| (0..16).fold(0_u32, |bits, place| bits | (u32::from(c) >> place & 1) << (2 * place));
-                let cell = |metres: f64| ((metres / side_m + 0.5) * f64::from(u16::MAX)) as u16;
-                poses.sort_by_cached_key(|pose| spread(cell(pose.position.x)) | spread(cell(pose.position.y)) << 1);
-            }
-            _ => {}
-        }
+        along_a_curve(&mut poses, side_m);
         let seconds = if robots < 1_280 { 60.0 } else { 6.0 };
         Self { arena, poses, seconds }
     }
+}
+
+/// Numbers robots along a Z-order curve, so that those that are near each other have near numbers: the bare loop keeps what it
+/// knows of them by number, and is to be as good as it can be. The numbers of a scenario's robots say nothing about places.
+fn along_a_curve(poses: &mut [Pose], side_m: f64) {
+    let spread = |cell: u16| (0..u16::BITS).fold(0, |bits, place| bits | (u32::from(cell) >> place & 1) << (2 * place));
+    let cell = |metres: f64| ((metres / side_m + 0.5) * f64::from(u16::MAX)) as u16;
+    poses.sort_by_cached_key(|pose| spread(cell(pose.position.x)) | spread(cell(pose.position.y)) << 1);
 }
 
 /// The side at which a random geometric graph has the wanted mean degree, its border effect included: the probability of

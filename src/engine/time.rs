@@ -69,17 +69,14 @@ impl Span {
         Self((seconds * NANOS_PER_SECOND + 0.5) as u64)
     }
 
-    /// The number of `period`s that it takes, rounded up. What is longer by a share of 1e-9 is none longer: a period that no
-    /// decimal holds, such as a third of a second, goes three times into a second.
+    /// The number of `period`s that it takes, rounded up. What is longer by a nanosecond and a share of 1e-9 is none longer: a
+    /// period that no decimal holds, such as a third of a second, goes three times into a second.
     #[must_use]
     pub const fn in_periods(self, period: Self) -> u64 {
         let period = if period.0 == 0 { 1 } else { period.0 };
         let (whole, left) = (self.0 / period, self.0 % period);
-        if left <= self.0 / 1_000_000_000 {
-            whole
-        } else {
-            whole + 1
-        }
+        let is_rounding = whole > 0 && left <= 1 + self.0 / 1_000_000_000;
+        if left == 0 || is_rounding { whole } else { whole + 1 }
     }
 
     /// Length in nanoseconds.

@@ -55,7 +55,7 @@ pub enum DeployConfig {
         /// half of it: `1.4 · body_radius · √robots` is the least to ask for.
         radius: Positive,
     },
-    /// Uniform over the arena.
+    /// Uniform over the arena, whatever a robot's number.
     Uniform,
     /// At these places, one for each robot in order, in metres from the arena's centre.
     At(Vec<(Finite, Finite)>),

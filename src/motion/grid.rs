@@ -202,7 +202,7 @@ mod tests {
     fn the_rim_of_the_range_is_within_it() {
         let mut grid = Grid::new(0.5);
         grid.rebuild(
-            &[Vec2::new(2.0, 0.0), Vec2::new(0.0, -2.000_000_001)],
+            &[Vec2::new(2.0, 0.0), Vec2::new(0.0, -2.000_000_01)],
             &[Vec2::zeros(); 2],
         );
         assert_eq!(found(&grid, Vec2::zeros(), 0.0, 2.0), [(0, Vec2::new(2.0, 0.0))]);

@@ -324,7 +324,7 @@ mod tests {
     }
 
     /// One place of each of 4,800 robots, so that all are independent: 100 a cell of 48. With 47 degrees of freedom chi-square is
-    /// below 82.7 with probability 0.999. Of them a share is within 0.2 m of a wall: a binomial, four σ. Legs of 4 s at 1 m/s mix
+    /// below 92 but for 1e-4. Of them a share is within 0.2 m of a wall: a binomial, four σ. Legs of 4 s at 1 m/s mix
     /// a room of 8 × 6 m within 80 s (its slowest mode falls off within L²/π²D = 64/(9.9 · 2) = 3.2 s).
     #[test]
     fn a_walker_is_in_the_long_run_anywhere_with_the_same_probability_walls_included() {
@@ -337,7 +337,7 @@ mod tests {
             let places = places_after(config, period, (80.0 / period) as u64, 4800);
             assert!(places.iter().all(|place| place.x.abs() <= 4.0 && place.y.abs() <= 3.0));
             let deviation = chi_square(&places, half, &[1.0 / 48.0; 48]);
-            assert!(deviation < 82.7, "period {period} s: {deviation}");
+            assert!(deviation < 92.0, "period {period} s: {deviation}");
             let near = places.iter().filter(|place| (half - place.abs()).min() < 0.2).count() as f64;
             let share: f64 = 1.0 - (7.6 * 5.6) / (8.0 * 6.0);
             let error = (4800.0 * share * (1.0 - share)).sqrt();
@@ -390,7 +390,7 @@ mod tests {
             };
             let places = places_after(config, period, (160.0 / period) as u64, 4800);
             let deviation = chi_square(&places, half, &shares);
-            assert!(deviation < 82.7, "period {period} s: {deviation}");
+            assert!(deviation < 92.0, "period {period} s: {deviation}");
         }
     }
 

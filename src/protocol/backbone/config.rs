@@ -78,7 +78,8 @@ pub struct ControlLawConfig {
     pub lane_gain: NonNegative,
     /// Most that a lane pulls, m/s: enough to bring a networker past one of another chain that stands in its way.
     pub lane_limit: NonNegative,
-    /// Speed, m/s, of one unit of the Lennard-Jones potential.
+    /// Speed, m/s, of one unit of the Lennard-Jones potential, in which distances are in units of twice `lj_delta`: metres, in the
+    /// paper.
     pub lj_speed: NonNegative,
     /// Distance from edge to body, metres, within which free robots avoid it.
     pub avoidance_range: NonNegative,

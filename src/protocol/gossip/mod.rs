@@ -1,5 +1,5 @@
 //! How robots repeat what they gossip: when a topic has its turn, what is sent then, how far and how often it is
-//! passed on.
+//! passed on. Each robot's turns begin at a phase of its own (`control.phase`).
 //!
 //! Which protocol heeds which setting:
 //!
