@@ -6,7 +6,7 @@ use std::path::Path;
 use assert_cmd::Command;
 use desim::engine::Span;
 use desim::metrics::comparison::{Comparison, Design, Trials};
-use desim::metrics::figures::{Better, Figure, Registry, Sample, pool};
+use desim::metrics::figures::{Figure, Registry, Sample, pool};
 use desim::metrics::{Summary, TrialRecord};
 use desim::scenario::{Override, Scenario, load, parse};
 use desim::simulation::{DriverKind, run_trial};
@@ -239,36 +239,4 @@ fn every_figure_that_summary_and_comparison_share_has_the_same_value_and_interva
     }
     // 24 files and more with some twenty figures each.
     assert!(shared > 400, "{shared} figures were compared");
-}
-
-#[test]
-fn every_figure_knows_which_way_is_better() {
-    let higher = [
-        "completion_ratio",
-        "lambda2_min",
-        "connected_share",
-        "delivery_ratio",
-        "detection.mistake_recurrence_s",
-        "detection.query_accuracy",
-        "healing.healed_ratio",
-        "spread.informed_ratio",
-    ];
-    let registry = Registry::of(&["status", "probe"]);
-    let mut found: Vec<&str> = registry
-        .figures()
-        .filter(|figure| figure.better == Better::Higher)
-        .map(|figure| figure.key.as_str())
-        .collect();
-    found.sort_unstable();
-    let mut higher = higher.to_vec();
-    higher.sort_unstable();
-    assert_eq!(
-        found, higher,
-        "of every other figure less is better: bytes, duplicates, latencies, steps, times of mistakes"
-    );
-    assert!(
-        registry
-            .figures()
-            .any(|figure| figure.key == "duplicates" && figure.better == Better::Lower)
-    );
 }
