@@ -207,7 +207,7 @@ impl Registry {
         self.add_plain("robots_used", "robots used", robots, |record| {
             record.robots_used().map(|robots| robots as f64)
         });
-        let lambda2 = (DIMENSIONLESS, Better::Higher, Estimator::Count);
+        let lambda2 = (DIMENSIONLESS, Better::Higher, Estimator::Median);
         self.add_plain("lambda2_min", "least λ₂", lambda2, TrialRecord::lambda2_min);
         self.add_plain(
             "connected_share",
