@@ -18,7 +18,7 @@ fn place() -> TempDir {
     let dir = tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(dir.path().join(name), text).unwrap();
     write("small.ron", &format!("// Why {}?\n{SCENARIO}", EVIL.replace('\r', "")));
-    write(&format!("ev\u{1b}[31mil\u{202e}.ron"), SCENARIO);
+    write("ev\u{1b}[31mil\u{202e}.ron", SCENARIO);
     write(
         "field.ron",
         &SCENARIO.replace("swarm", &format!("/* {EVIL} */ swa{}rm", "\u{1b}[2J")),
