@@ -28,6 +28,7 @@ pub struct FileEntry {
 
 impl FileEntry {
     /// Of a file with this content.
+    #[must_use]
     pub fn of(content: &[u8]) -> Self {
         Self {
             bytes: content.len() as u64,

@@ -106,11 +106,11 @@ impl Grid {
                 for ((cell, &width), &column) in cells.iter().zip(widths).zip(part) {
                     let words = cell.get(line).map_or("", |words| words);
                     let pad = " ".repeat(width.saturating_sub(columns(words)));
-                    text.push_str(&" ".repeat(GAP));
-                    text.push_str(&match self.columns[column] {
-                        Column::Words => format!("{words}{pad}"),
-                        Column::Figures => format!("{pad}{words}"),
-                    });
+                    let parts = match self.columns[column] {
+                        Column::Words => [words, &pad],
+                        Column::Figures => [&pad, words],
+                    };
+                    text.extend([&" ".repeat(GAP), parts[0], parts[1]]);
                 }
                 lines.push(text);
             }
@@ -237,7 +237,9 @@ mod tests {
             rows in prop::collection::vec(prop::collection::vec("[a-z漢 ]{0,30}", 6), 0..6), width in 20_usize..160,
         ) {
             let mut grid = Grid::of_figures(&["one", "two words", "three", "four", "five", "six"]);
-            rows.iter().for_each(|row| grid.row(row));
+            for row in &rows {
+                grid.row(row);
+            }
             let widths: Vec<Width> = (0..6).map(|column| grid.width(column)).collect();
             let unavoidable = (1..6).map(|column| 2 * GAP + widths[0].least + widths[column].least).max().unwrap_or(0);
             for line in grid.lines(width).concat() {

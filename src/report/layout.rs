@@ -87,7 +87,9 @@ impl Page {
             if part > 0 {
                 self.gap();
             }
-            lines.iter().for_each(|line| self.put(line));
+            for line in lines {
+                self.put(line);
+            }
         }
     }
 

@@ -117,7 +117,7 @@ pub fn flip(dir: &Path, results: &Path, commands: &[&[&str]], tries: usize) {
 
 /// Kills the command again and again at instants that chance draws from the time that a whole run takes, each time by another
 /// signal; then lets it come to its end.
-pub fn kill(dir: &Path, arguments: &[&str], whole: Duration, chance: &mut Chance) -> u32 {
+pub fn kill(dir: &Path, arguments: &[&str], whole: Duration, chance: &mut Chance) -> usize {
     let mut kills = 0;
     for signal in ["KILL", "INT", "TERM"] {
         let mut child = desim(dir, arguments)
@@ -134,7 +134,7 @@ pub fn kill(dir: &Path, arguments: &[&str], whole: Duration, chance: &mut Chance
             .stderr(Stdio::null())
             .status();
         let status = child.wait().unwrap();
-        kills += u32::from(!status.success());
+        kills += usize::from(!status.success());
         assert!(matches!(status.code(), None | Some(0 | 130)), "{signal}: {status}");
     }
     let last = desim(dir, arguments).output().unwrap();

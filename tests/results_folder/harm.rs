@@ -49,18 +49,13 @@ fn a_run_killed_at_any_instant_goes_on_to_the_same_bytes_and_leaves_nothing_behi
     let whole = timed(dir.path(), &run);
     let expected = tree(&dir.path().join("results"));
     let mut chance = Chance(1);
-    let mut kills = 0;
-    for attempt in 0..tries(6).div_ceil(3) {
+    let mut kills: usize = 0;
+    while kills < tries(6) {
         fs::remove_dir_all(dir.path().join("results")).unwrap();
         kills += kill(dir.path(), &run, whole, &mut chance);
-        assert_same(
-            &expected,
-            &tree(&dir.path().join("results")),
-            &format!("attempt {attempt}"),
-        );
+        assert_same(&expected, &tree(&dir.path().join("results")), &format!("{kills} kills"));
     }
     println!("{kills} runs killed");
-    assert!(kills > 0);
 }
 
 #[test]
@@ -70,16 +65,12 @@ fn a_report_killed_at_any_instant_leaves_nothing_behind() {
     let whole = timed(dir.path(), &report);
     let expected = tree(&dir.path().join("results"));
     let mut chance = Chance(2);
-    let mut kills = 0;
-    for attempt in 0..tries(6).div_ceil(3) {
+    let mut kills: usize = 0;
+    while kills < tries(6) {
         let page = dir.path().join("results/missed/report.html");
         kills += kill(dir.path(), &report, whole, &mut chance);
         assert!(page.exists());
-        assert_same(
-            &expected,
-            &tree(&dir.path().join("results")),
-            &format!("attempt {attempt}"),
-        );
+        assert_same(&expected, &tree(&dir.path().join("results")), &format!("{kills} kills"));
     }
     println!("{kills} reports killed");
 }
@@ -102,10 +93,6 @@ fn what_a_killed_attempt_left_beside_finished_results_goes_when_they_are_shown()
 #[test]
 fn a_kept_trial_that_has_changed_runs_again() {
     let dir = place();
-    let run = ["scenario", "missed.ron", "--quiet"];
-    timed(dir.path(), &run);
-    let expected = tree(&dir.path().join("results"));
-    fs::remove_dir_all(dir.path().join("results")).unwrap();
     let interrupted = [
         "scenario",
         "missed.ron",
@@ -148,7 +135,6 @@ fn a_kept_trial_that_has_changed_runs_again() {
         ],
     );
     assert!(events("long") == events("whole"));
-    assert!(!expected.is_empty());
 }
 
 #[test]
@@ -188,9 +174,9 @@ fn a_folder_that_takes_no_files_is_reported_all_the_same() {
         for path in [dir.path(), &dir.path().join("results"), &results] {
             fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
         }
-        files(&results)
-            .iter()
-            .for_each(|file| fs::set_permissions(file, fs::Permissions::from_mode(0o444)).unwrap());
+        for file in files(&results) {
+            fs::set_permissions(file, fs::Permissions::from_mode(0o444)).unwrap();
+        }
     };
     all(0o555);
     let probe = results.join("probe");
@@ -267,11 +253,8 @@ fn the_readme_says_how_to_check_a_folder_by_hand() {
     let dir = finished();
     let manifest = fs::read_to_string(dir.path().join("results/missed/manifest.json")).unwrap();
     let is_own = |line: &&str| line.starts_with("  \"xxh3_128\"");
-    let rest: String = manifest
-        .lines()
-        .filter(|line| !is_own(line))
-        .map(|line| format!("{line}\n"))
-        .collect();
+    let rest: Vec<&str> = manifest.lines().filter(|line| !is_own(line)).collect();
+    let rest = rest.join("\n") + "\n";
     let own = manifest.lines().find(is_own).unwrap();
     let hash = format!("{:032x}", xxhash_rust::xxh3::xxh3_128(rest.as_bytes()));
     assert_eq!(own, format!("  \"xxh3_128\": \"{hash}\","));
@@ -285,7 +268,7 @@ fn a_file_that_never_ends_is_refused_at_once() {
         let file = results.join(name);
         let whole = fs::read(&file).unwrap();
         for make in [pipe as fn(&Path), |file| {
-            std::os::unix::fs::symlink("/dev/zero", file).unwrap()
+            std::os::unix::fs::symlink("/dev/zero", file).unwrap();
         }] {
             fs::remove_file(&file).unwrap();
             make(&file);

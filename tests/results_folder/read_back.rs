@@ -131,45 +131,6 @@ fn a_damaged_folder_is_refused_by_the_file_that_is_wrong() {
             }),
         ),
         (
-            "a folder for a table",
-            complaint(|dir| {
-                fs::remove_file(dir.join(table)).unwrap();
-                fs::create_dir(dir.join(table)).unwrap();
-            }),
-        ),
-        (
-            "a device for a table",
-            complaint(|dir| {
-                fs::remove_file(dir.join(table)).unwrap();
-                std::os::unix::fs::symlink("/dev/zero", dir.join(table)).unwrap();
-            }),
-        ),
-        (
-            "a link to itself for a table",
-            complaint(|dir| {
-                fs::remove_file(dir.join(table)).unwrap();
-                std::os::unix::fs::symlink(table, dir.join(table)).unwrap();
-            }),
-        ),
-        (
-            "a table of a terabyte",
-            complaint(|dir| {
-                fs::File::options()
-                    .write(true)
-                    .open(dir.join(table))
-                    .unwrap()
-                    .set_len(1 << 40)
-                    .unwrap()
-            }),
-        ),
-        (
-            "a manifest of a terabyte",
-            complaint(|dir| {
-                let manifest = fs::File::options().write(true).open(dir.join("manifest.json")).unwrap();
-                manifest.set_len(1 << 40).unwrap();
-            }),
-        ),
-        (
             "manifest forgets a table",
             complaint(|dir| {
                 forge(&dir.join("manifest.json"), |text| {
@@ -207,11 +168,57 @@ fn a_damaged_folder_is_refused_by_the_file_that_is_wrong() {
             complaint(|dir| fs::remove_file(dir.join("manifest.json")).unwrap()),
         ),
     ];
-    let said: Vec<String> = said
+    insta::assert_snapshot!(list(&said));
+}
+
+#[test]
+fn what_can_be_no_file_of_results_is_refused_before_it_is_read() {
+    let table = "bandwidth.parquet";
+    let said = [
+        (
+            "a folder for a table",
+            complaint(|dir| {
+                fs::remove_file(dir.join(table)).unwrap();
+                fs::create_dir(dir.join(table)).unwrap();
+            }),
+        ),
+        (
+            "a device for a table",
+            complaint(|dir| {
+                fs::remove_file(dir.join(table)).unwrap();
+                std::os::unix::fs::symlink("/dev/zero", dir.join(table)).unwrap();
+            }),
+        ),
+        (
+            "a link to itself for a table",
+            complaint(|dir| {
+                fs::remove_file(dir.join(table)).unwrap();
+                std::os::unix::fs::symlink(table, dir.join(table)).unwrap();
+            }),
+        ),
+        (
+            "a table of a terabyte",
+            complaint(|dir| {
+                let file = fs::File::options().write(true).open(dir.join(table)).unwrap();
+                file.set_len(1 << 40).unwrap();
+            }),
+        ),
+        (
+            "a manifest of a terabyte",
+            complaint(|dir| {
+                let manifest = fs::File::options().write(true).open(dir.join("manifest.json")).unwrap();
+                manifest.set_len(1 << 40).unwrap();
+            }),
+        ),
+    ];
+    insta::assert_snapshot!(list(&said));
+}
+
+fn list(said: &[(&str, String)]) -> String {
+    let lines = said
         .iter()
-        .map(|(what, words)| format!("{what}\n  {}\n", without_lengths(words)))
-        .collect();
-    insta::assert_snapshot!(said.join("\n"));
+        .map(|(what, words)| format!("{what}\n  {}\n", without_lengths(words)));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// `words` with N for every number of bytes above the one that the test itself chose: lengths of files change with every figure.
