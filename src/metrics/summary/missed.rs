@@ -187,7 +187,9 @@ mod tests {
             control_period: Span::from_secs(0.1),
             mission: None,
             rumors: 0,
+            completion: crate::protocol::CompletionConfig::default(),
             status_memory: Span::from_secs(8.0),
+            patience: Span::from_secs(4.0),
             trace: None,
         };
         let at = |place: usize| SimTime::from_secs(10.0 * place as f64);
@@ -198,6 +200,7 @@ mod tests {
             simulated: at(samples.len()),
             events: 1,
             digest: 0,
+            robot_steps: vec![1; 5],
             poses: vec![Pose::default(); 5],
         });
         let sample = |(place, stands): (usize, &[Stand; TARGETS])| ConnectivitySample {
