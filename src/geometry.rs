@@ -32,6 +32,35 @@ impl From<Pose> for [f64; 3] {
     }
 }
 
+/// By how much a length may be beyond a limit and still count as at it, as a share of the limit.
+///
+/// People write lengths in decimals, which binary numbers hold with a share of 1e-16 too much or too little: robots at 0.1 and 0.8
+/// are 0.7000000000000001 m apart, and within 0.7 m of each other all the same. So every limit that includes its rim reaches to
+/// [`at_most`] of it or begins at [`at_least`] of it. Coordinates may be a million times as large as the limit before their
+/// rounding (2⁻⁵³ each) shows, and the share itself is below anything measured: 2 nm at 2 m.
+pub const ROUNDING: f64 = 1e-9;
+
+/// The largest length that counts as no more than `limit`.
+#[inline]
+#[must_use]
+pub fn at_most(limit: f64) -> f64 {
+    limit * (1.0 + ROUNDING)
+}
+
+/// The smallest length that counts as no less than `limit`.
+#[inline]
+#[must_use]
+pub fn at_least(limit: f64) -> f64 {
+    limit * (1.0 - ROUNDING)
+}
+
+/// Whether `place` is to the left of the line through `point` in the direction of `along`, or on it.
+#[must_use]
+pub fn is_left_of(place: Vec2, point: Vec2, along: Vec2) -> bool {
+    let off = place - point;
+    along.perp(&off) >= -ROUNDING * along.norm() * off.norm()
+}
+
 /// The angle equal to `angle` modulo a full turn, in (−π, π].
 #[must_use]
 pub fn wrap_angle(angle: f64) -> f64 {

@@ -30,7 +30,7 @@ fn run(scenario: &Scenario) -> TrialRecord {
 fn heartbeats(robots: u32, faults: &str) -> Scenario {
     scenario(&format!(
         "Scenario(name: \"beats\", time_limit: 60.0, swarm: (robots: {robots}, deploy: Cluster(radius: 0.9)), \
-         protocol: Heartbeat, radio: (latency: Constant(0.02)), faults: {faults})"
+         control: (phase: Together), protocol: Heartbeat, radio: (latency: Constant(0.02)), faults: {faults})"
     ))
 }
 

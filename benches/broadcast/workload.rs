@@ -48,6 +48,26 @@ impl Workload {
             &Streams::new(SEED, 0),
         )
         .expect("a square of this density has room");
+        let mut poses = poses;
+        match std::env::var("DESIM_ORDER").as_deref() {
+            Ok("random") => {
+                // deterministic shuffle
+                let mut state = 88172645463325252_u64;
+                for i in (1..poses.len()).rev() {
+                    state ^= state << 13;
+                    state ^= state >> 7;
+                    state ^= state << 17;
+                    poses.swap(i, (state % (i as u64 + 1)) as usize);
+                }
+            }
+            Ok("curve") => {
+                let spread =
+                    |c: u16| (0..16).fold(0_u32, |bits, place| bits | (u32::from(c) >> place & 1) << (2 * place));
+                let cell = |metres: f64| ((metres / side_m + 0.5) * f64::from(u16::MAX)) as u16;
+                poses.sort_by_cached_key(|pose| spread(cell(pose.position.x)) | spread(cell(pose.position.y)) << 1);
+            }
+            _ => {}
+        }
         let seconds = if robots < 1_280 { 60.0 } else { 6.0 };
         Self { arena, poses, seconds }
     }

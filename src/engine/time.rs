@@ -69,6 +69,19 @@ impl Span {
         Self((seconds * NANOS_PER_SECOND + 0.5) as u64)
     }
 
+    /// The number of `period`s that it takes, rounded up. What is longer by a share of 1e-9 is none longer: a period that no
+    /// decimal holds, such as a third of a second, goes three times into a second.
+    #[must_use]
+    pub const fn in_periods(self, period: Self) -> u64 {
+        let period = if period.0 == 0 { 1 } else { period.0 };
+        let (whole, left) = (self.0 / period, self.0 % period);
+        if left <= self.0 / 1_000_000_000 {
+            whole
+        } else {
+            whole + 1
+        }
+    }
+
     /// Length in nanoseconds.
     #[must_use]
     pub const fn as_nanos(self) -> u64 {
@@ -138,6 +151,28 @@ mod tests {
         let step = Span::from_secs(0.1);
         let end = (0..1000).fold(SimTime::ZERO, |now, _| now + step);
         assert_eq!(end, SimTime::from_secs(100.0));
+    }
+
+    #[test]
+    fn a_span_takes_as_many_periods_as_a_person_counts_and_rounds_up_what_is_really_more() {
+        let periods = |span, period| Span::from_secs(span).in_periods(Span::from_secs(period));
+        for period in [0.1, 0.3, 0.7, 1.1, 1.0 / 3.0, 1.0 / 7.0, 0.025] {
+            for count in 1..200_u32 {
+                assert_eq!(
+                    periods(f64::from(count) * period, period),
+                    u64::from(count),
+                    "{count} × {period}"
+                );
+            }
+        }
+        assert_eq!(
+            (periods(1.0, 1.0 / 3.0), periods(1.0, 0.333), periods(1.0, 0.3)),
+            (3, 4, 4)
+        );
+        assert_eq!(
+            (periods(0.0, 0.1), periods(1e-9, 0.1), periods(1.000_001, 1.0)),
+            (0, 1, 2)
+        );
     }
 
     #[test]

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::engine::SimTime;
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 use crate::quantity::{Finite, NonNegative, Positive, Probability};
 
 /// One way in which robots or links fail. The first seven fail robots and are short for `Robots`, the general form.
@@ -201,10 +201,10 @@ impl RegionConfig {
     pub fn contains(&self, place: Vec2) -> bool {
         match self {
             Self::Anywhere => true,
-            Self::Disc { at, radius } => (place - point(*at)).norm() <= radius.get(),
+            Self::Disc { at, radius } => (place - point(*at)).norm() <= at_most(radius.get()),
             Self::Rectangle { at, size } => {
                 let off = (place - point(*at)).abs();
-                off.x <= size.0.get() / 2.0 && off.y <= size.1.get() / 2.0
+                off.x <= at_most(size.0.get() / 2.0) && off.y <= at_most(size.1.get() / 2.0)
             }
         }
     }

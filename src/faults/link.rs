@@ -2,7 +2,7 @@
 
 use super::config::{FaultConfig, LinksConfig, point};
 use crate::engine::{ActorId, SimTime};
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, is_left_of};
 
 /// How links fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl LinkFault {
     pub fn loss(&self, (sender, from): Placed, (receiver, to): Placed) -> f64 {
         match &self.kind {
             Kind::Partition { point, along } => {
-                let left = |place: Vec2| along.perp(&(place - point)) >= 0.0;
+                let left = |place| is_left_of(place, *point, *along);
                 f64::from(u8::from(left(from) != left(to)))
             }
             Kind::Burst { links, loss } => {

@@ -2,7 +2,7 @@
 
 use crate::engine::{ActorId, SimTime};
 use crate::faults::{Change, Subject};
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 use crate::protocol::Topic;
 
 use super::mission::{Mission, Scene};
@@ -46,7 +46,7 @@ impl Standing {
     }
 
     fn meets(self, wanted: Self) -> bool {
-        self.links >= wanted.links && self.worker <= wanted.worker
+        self.links >= wanted.links && self.worker <= at_most(wanted.worker)
     }
 }
 
@@ -86,7 +86,7 @@ impl Healing {
         let before = Standing::of(target, mission, scene);
         // A worker's place is its progress. Where it is on its way, and a relay of its fails, only the links count.
         let is_worker = scene.reports.roles[robot.index()] == mission.worker_role;
-        let worker = if is_worker || before.worker <= mission.reach {
+        let worker = if is_worker || before.worker <= at_most(mission.reach) {
             before.worker.max(mission.reach)
         } else {
             f64::INFINITY

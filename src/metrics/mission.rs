@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use crate::engine::ActorId;
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 use crate::protocol::Role;
 
 use super::connectivity::Chains;
@@ -65,7 +65,7 @@ impl<'a> Scene<'a> {
 
     fn chains(&self, root: ActorId) -> Chains {
         Chains::new(&self.reports.parents, root, |child, parent| {
-            self.are_live(child, parent) && self.apart(child, parent) <= self.radio_range
+            self.are_live(child, parent) && self.apart(child, parent) <= at_most(self.radio_range)
         })
     }
 }
@@ -142,7 +142,7 @@ impl Mission {
         scene
             .reports
             .working_for(target, self.worker_role)
-            .filter(move |robot| (scene.positions[robot.index()] - position).norm() <= self.reach)
+            .filter(move |robot| (scene.positions[robot.index()] - position).norm() <= at_most(self.reach))
             .filter(move |&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
     }
 
@@ -154,7 +154,9 @@ impl Mission {
             .enumerate()
             .filter(|(i, parent)| !named[..*i].contains(parent));
         distinct
-            .filter(|&(_, &parent)| scene.are_live(robot, parent) && scene.apart(robot, parent) <= self.link_limit)
+            .filter(|&(_, &parent)| {
+                scene.are_live(robot, parent) && scene.apart(robot, parent) <= at_most(self.link_limit)
+            })
             .count()
     }
 }

@@ -8,7 +8,7 @@ use super::arena::Arena;
 use super::config::{ArenaConfig, DeployConfig};
 use super::occupancy::Occupancy;
 use crate::engine::{KeyedStreams, Purpose, Streams};
-use crate::geometry::{Pose, Vec2, wrap_angle};
+use crate::geometry::{Pose, Vec2, at_least, wrap_angle};
 use crate::quantity::Finite;
 
 const PLACE: Purpose = Purpose::new("motion.deploy.place");
@@ -17,8 +17,6 @@ const HEADING: Purpose = Purpose::new("motion.deploy.heading");
 /// Random places tried for one robot before deployment gives up. When bodies are to cover half of a region, the last
 /// robots need some hundred tries; near the density where random placement jams (0.547, Feder 1980), any number.
 const TRIES: u32 = 20_000;
-/// Bodies in a list of places may overlap by the rounding of what was typed, in metres.
-const ROUNDING: f64 = 1e-9;
 
 /// Robots cannot be deployed as the scenario asks.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -74,7 +72,8 @@ impl std::fmt::Display for Hindrance {
 }
 
 /// Poses for `robots` robots of `body_radius` metres, in order of their ids: bodies overlap neither each other nor walls
-/// nor obstacles; headings are uniform. A robot's draws depend on no other robot's.
+/// nor obstacles; headings are uniform. A robot's draws depend on no other robot's, and its number says nothing about its place
+/// but what the deployment itself says of it.
 ///
 /// # Errors
 /// If places that the scenario gives are too few, too many or not free, or if a random place was not found in 20,000
@@ -89,9 +88,7 @@ pub fn deploy(
     let site = Site::new(arena, robots, body_radius);
     let places = match config {
         DeployConfig::Cluster { radius } => site.scatter(Region::Disc(radius.get()), streams.keyed(PLACE)),
-        DeployConfig::Uniform => site
-            .scatter(Region::Arena, streams.keyed(PLACE))
-            .map(|places| site.number(places)),
+        DeployConfig::Uniform => site.scatter(Region::Arena, streams.keyed(PLACE)),
         DeployConfig::At(places) => site.at(places),
     }?;
     let headings = streams.keyed(HEADING);
@@ -109,14 +106,7 @@ pub(super) fn taken(places: &[(Finite, Finite)], arena: &ArenaConfig, body_radiu
 
 /// Whether robot 0 can stand at the arena's centre.
 pub(super) fn centre_is_free(arena: &ArenaConfig, body_radius: f64) -> bool {
-    Arena::new(arena).clearance(Vec2::zeros()) >= body_radius
-}
-
-/// The bits of `coordinate`, each followed by a 0 on its left.
-fn spread_bits(coordinate: u16) -> u32 {
-    (0..u16::BITS).fold(0, |bits, place| {
-        bits | (u32::from(coordinate) >> place & 1) << (2 * place)
-    })
+    Arena::new(arena).clearance(Vec2::zeros()) >= at_least(body_radius)
 }
 
 /// Where robots may be put at random.
@@ -175,15 +165,6 @@ impl Site {
             .find(|&place| self.check(robot, place, self.body_radius, occupancy).is_ok())
     }
 
-    /// The same places in the order of a Z-order curve, so that robots that are near each other have near numbers, and
-    /// what the simulator knows of them lies together in memory.
-    fn number(&self, mut places: Vec<Vec2>) -> Vec<Vec2> {
-        let size = 2.0 * self.arena.half();
-        let cell = |metres: f64, size: f64| ((metres / size + 0.5) * f64::from(u16::MAX)) as u16;
-        places.sort_by_cached_key(|place| spread_bits(cell(place.x, size.x)) | spread_bits(cell(place.y, size.y)) << 1);
-        places
-    }
-
     fn at(&self, places: &[(Finite, Finite)]) -> Result<Vec<Vec2>, DeployError> {
         if places.len() != self.robots as usize {
             return Err(DeployError::WrongCount {
@@ -200,11 +181,11 @@ impl Site {
 
     /// Takes every place, free or not, and reports those that were not.
     fn settle(&self, places: &[(Finite, Finite)]) -> (Occupancy, Vec<DeployError>) {
-        let mut occupancy = Occupancy::new(self.arena.half(), 2.0 * self.body_radius - ROUNDING, places.len());
+        let mut occupancy = Occupancy::new(self.arena.half(), at_least(2.0 * self.body_radius), places.len());
         let mut errors = Vec::new();
         for (robot, place) in (0..).zip(places) {
             let place = Vec2::new(place.0.get(), place.1.get());
-            errors.extend(self.check(robot, place, self.body_radius - ROUNDING, &occupancy).err());
+            errors.extend(self.check(robot, place, at_least(self.body_radius), &occupancy).err());
             occupancy.take(place);
         }
         (occupancy, errors)

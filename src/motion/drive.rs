@@ -4,13 +4,15 @@ use super::config::{MotionConfig, PidConfig};
 use super::pid::Pid;
 use crate::geometry::{Vec2, clamp_length, unit, wrap_angle};
 
-/// A robot asked to go slower than this, in m/s, is asked to stand: its heading is its own.
-const STANDSTILL: f64 = 1e-6;
+/// A robot asked to go slower than its largest speed over this is asked to stand: its heading is its own. 1 µm/s of the paper's
+/// 0.026 m/s.
+const STANDSTILL: f64 = 26_000.0;
 
 /// What is the same for every drive of a world. SI units, angles in radians.
 pub(super) struct Chassis {
     tick: f64,
     max_speed: f64,
+    standstill: f64,
     max_turn_rate: f64,
     linear: PidConfig,
     angular: PidConfig,
@@ -32,6 +34,7 @@ impl Chassis {
         Self {
             tick,
             max_speed: config.max_speed.get(),
+            standstill: config.max_speed.get() / STANDSTILL,
             max_turn_rate: config.max_turn_rate.get().to_radians(),
             linear: config.linear,
             angular: config.angular,
@@ -52,8 +55,8 @@ impl Drive {
     }
 
     /// Sets the velocity to reach. One that is not finite asks to stand.
-    pub(super) fn command(&mut self, velocity: Vec2) {
-        let stands = !velocity.iter().all(|component| component.is_finite()) || velocity.norm() < STANDSTILL;
+    pub(super) fn command(&mut self, chassis: &Chassis, velocity: Vec2) {
+        let stands = !velocity.iter().all(|component| component.is_finite()) || velocity.norm() < chassis.standstill;
         self.command = if stands { Vec2::zeros() } else { velocity };
     }
 
@@ -101,7 +104,7 @@ impl Drive {
         let limits = (-self.speed / tick, (chassis.max_speed - self.speed) / tick);
         let acceleration = self.linear.step(&chassis.linear, tick, setpoint - self.speed, limits);
         self.speed = (self.speed + acceleration * tick).clamp(0.0, chassis.max_speed);
-        if setpoint == 0.0 && self.speed < STANDSTILL {
+        if setpoint == 0.0 && self.speed < chassis.standstill {
             self.speed = 0.0;
             self.linear = Pid::default();
         }
@@ -130,7 +133,7 @@ mod tests {
     #[test]
     fn a_robot_that_faces_its_way_gains_half_of_the_missing_speed_each_tick() {
         let mut drive = Drive::new(0.0);
-        drive.command(Vec2::new(0.02, 0.0));
+        drive.command(&chassis(), Vec2::new(0.02, 0.0));
         for n in 1..10 {
             let velocity = drive.steer(&chassis());
             assert!((velocity - Vec2::new(0.02 * (1.0 - 0.5_f64.powi(n)), 0.0)).norm() < 1e-15);
@@ -141,7 +144,7 @@ mod tests {
     #[test]
     fn a_turn_in_place_settles_within_a_degree_in_two_seconds_and_never_overshoots() {
         let mut drive = Drive::new(0.0);
-        drive.command(unit(PI * 0.99) * 0.026);
+        drive.command(&chassis(), unit(PI * 0.99) * 0.026);
         let mut error = PI * 0.99;
         for _ in 0..20 {
             drive.steer(&chassis());
@@ -157,7 +160,7 @@ mod tests {
     #[test]
     fn a_robot_that_faces_away_turns_before_it_drives() {
         let mut drive = Drive::new(PI);
-        drive.command(Vec2::new(0.026, 0.0));
+        drive.command(&chassis(), Vec2::new(0.026, 0.0));
         for _ in 0..4 {
             assert_eq!(drive.steer(&chassis()), Vec2::zeros());
             drive.turn(&chassis());
@@ -167,12 +170,12 @@ mod tests {
     #[test]
     fn a_robot_asked_to_stand_brakes_to_rest_and_keeps_its_heading() {
         let mut drive = Drive::new(0.5);
-        drive.command(unit(0.5) * 0.026);
+        drive.command(&chassis(), unit(0.5) * 0.026);
         for _ in 0..20 {
             drive.steer(&chassis());
             drive.turn(&chassis());
         }
-        drive.command(Vec2::new(1e-9, f64::NAN));
+        drive.command(&chassis(), Vec2::new(1e-9, f64::NAN));
         let heading = drive.heading(0.0);
         for _ in 0..20 {
             drive.steer(&chassis());
@@ -205,7 +208,7 @@ mod tests {
             let chassis = Chassis::new(&config, 0.1);
             let mut drive = Drive::new(1.0);
             for (x, y) in commands {
-                drive.command(Vec2::new(x, y));
+                drive.command(&chassis, Vec2::new(x, y));
                 let before = drive.heading(0.0);
                 let velocity = drive.steer(&chassis);
                 drive.turn(&chassis);

@@ -3,12 +3,10 @@
 use std::ops::Range;
 
 use crate::engine::prefetch_all;
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 
 /// Cells are allowed up to this many for each point, so that few points in a wide arena cost no memory.
 const CELLS_PER_POINT: usize = 4;
-/// More than the rounding of a coordinate, in metres: widens searches, never what they find.
-const ROUNDING: f64 = 1e-9;
 /// Near points noted before they are visited.
 const BATCH: usize = 64;
 
@@ -58,7 +56,7 @@ impl Grid {
         self.fastest = velocities.iter().map(Vec2::norm_squared).fold(0.0, f64::max).sqrt();
     }
 
-    /// Calls `visit` once for each point within `range` of `centre`, the rim included, `elapsed` seconds after the
+    /// Calls `visit` once for each point within `range` of `centre`, [the rim included](at_most), `elapsed` seconds after the
     /// grid was built: with its number and where it is then, relative to `centre`. The order depends on nothing but
     /// what the grid was built from.
     ///
@@ -66,7 +64,8 @@ impl Grid {
     /// that may be near are first noted without a branch, over all rows, then visited.
     #[inline]
     pub(super) fn for_each_within(&self, centre: Vec2, elapsed: f64, range: f64, mut visit: impl FnMut(u32, Vec2)) {
-        let reach = range + self.fastest * elapsed + ROUNDING;
+        let range = at_most(range);
+        let reach = at_most(range + self.fastest * elapsed);
         let (left, right) = (self.column(centre.x - reach), self.column(centre.x + reach));
         let mut near = [0_u32; BATCH];
         let mut found = 0;
@@ -237,7 +236,7 @@ mod tests {
             found.sort_by_key(|&(id, _)| id);
             let brute: Vec<_> = (0..positions.len())
                 .map(|id| (id as u32, positions[id] + velocities[id] * elapsed - centre))
-                .filter(|(_, offset)| offset.norm_squared() <= range * range)
+                .filter(|(_, offset)| offset.norm_squared() <= at_most(range).powi(2))
                 .collect();
             prop_assert_eq!(found, brute);
         }

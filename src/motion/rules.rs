@@ -2,6 +2,7 @@
 
 use super::config::{ArenaConfig, DeployConfig, MotionConfig, ObstacleConfig, PidConfig};
 use super::deploy::{DeployError, centre_is_free, taken};
+use crate::geometry::{at_least, at_most};
 use crate::quantity::Finite;
 
 /// A field's path, relative to the section that holds it, and what to do about its value.
@@ -94,7 +95,7 @@ impl ArenaConfig {
     fn outside(&self, point: (Finite, Finite)) -> Option<String> {
         let (x, y) = (point.0.get(), point.1.get());
         let (half_width, half_height) = (self.size.0.get() / 2.0, self.size.1.get() / 2.0);
-        (x.abs() > half_width || y.abs() > half_height).then(|| {
+        (x.abs() > at_most(half_width) || y.abs() > at_most(half_height)).then(|| {
             format!(
                 "({x}, {y}) is outside the arena: x reaches from {} to {half_width}, y from {} to {half_height}",
                 -half_width, -half_height
@@ -110,7 +111,7 @@ impl DeployConfig {
     #[must_use]
     pub fn problems(&self, robots: u32, arena: &ArenaConfig, body_radius: f64) -> Vec<Problem> {
         let (width, height) = (arena.size.0.get(), arena.size.1.get());
-        if width.min(height) < 2.0 * body_radius {
+        if width.min(height) < at_least(2.0 * body_radius) {
             let message = format!(
                 "the arena, {width} m × {height} m, cannot hold a robot {} m wide",
                 2.0 * body_radius

@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_2_PI, PI};
 
 use super::config::{ArenaConfig, DeployConfig};
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 use crate::quantity::Finite;
 
 /// Shells that a range is cut into where distances follow a law.
@@ -94,6 +94,7 @@ impl Spacing {
     /// given places, or thin shells.
     pub fn for_each_within(&self, range: f64, mut visit: impl FnMut(f64, f64)) {
         if let Law::Places(places) = &self.law {
+            let range = at_most(range);
             for (index, place) in places.iter().enumerate() {
                 let ahead = places[index + 1..]
                     .iter()

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::engine::{ActorId, SimTime, Span, Streams};
-use crate::geometry::{Pose, Vec2, unit};
+use crate::geometry::{Pose, Vec2, at_most, unit};
 use crate::quantity::{Finite, NonNegative, Positive};
 
 fn pose(x: f64, y: f64, heading: f64) -> Pose {
@@ -245,7 +245,7 @@ fn neighbours_by_force(world: &World, id: ActorId, at: SimTime, range: f64) -> V
     ids(world)
         .filter(|&other| other != id)
         .map(|other| (other, world.position(other, at) - world.position(id, at)))
-        .filter(|(_, offset)| offset.norm_squared() <= range * range)
+        .filter(|(_, offset)| offset.norm_squared() <= at_most(range).powi(2))
         .collect()
 }
 

@@ -6,10 +6,11 @@ use super::contact::Contacts;
 use super::drive::{Chassis, Drive};
 use super::grid::Grid;
 use crate::engine::{ActorId, SimTime, Span, prefetch};
-use crate::geometry::{Pose, Vec2};
+use crate::geometry::{Pose, Vec2, at_most};
 
-/// The least distance that proximity reports, in metres: what touches still has a direction.
+/// The least distance that proximity reports, in metres, for a body of this radius: what touches still has a direction.
 const TOUCH: f64 = 1e-6;
+const OF_RADIUS: f64 = 0.07;
 
 /// All robots in the arena, at the last tick and on their way to the next.
 ///
@@ -94,11 +95,11 @@ impl World {
     }
 
     /// Sets the velocity that robot `id` is to reach, in the arena's axes, m/s. It is shortened to the largest speed,
-    /// taken up at the next tick, and kept until replaced. Below 1 µm/s, or if it is not finite, the robot is to stand
-    /// and keeps its heading.
+    /// taken up at the next tick, and kept until replaced. Below the largest speed over 26,000, or if it is not finite,
+    /// the robot is to stand and keeps its heading.
     pub fn command(&mut self, id: ActorId, velocity: Vec2) {
         let drive = &mut self.drives[id.index()];
-        drive.command(velocity);
+        drive.command(&self.chassis, velocity);
         self.stirring |= !drive.rests();
     }
 
@@ -200,24 +201,25 @@ impl World {
 
     /// Adds to `out` what the proximity sensors of robot `id` see at instant `at` (from the last tick to the next): the
     /// vector from its edge to the nearest point of each body within the proximity range, in the arena's axes, metres.
-    /// Other robots come first, then the arena's walls, then obstacles. What touches is reported 1 µm away, so that it
+    /// Other robots come first, then the arena's walls, then obstacles. What touches is reported 1/70,000 of a radius away, so that it
     /// has a direction.
     pub fn proximity(&self, id: ActorId, at: SimTime, out: &mut Vec<Vec2>) {
         let centre = self.position(id, at);
         let robot_reach = 2.0 * self.body_radius + self.proximity_range;
+        let touch = self.body_radius / OF_RADIUS * TOUCH;
         self.bodies
             .for_each_within(centre, self.elapsed(at), robot_reach, |other, offset| {
                 let distance = offset.norm();
                 if other != id.0 && distance > 0.0 {
-                    out.push(offset * ((distance - 2.0 * self.body_radius).max(TOUCH) / distance));
+                    out.push(offset * ((distance - 2.0 * self.body_radius).max(touch) / distance));
                 }
             });
         let fixed_reach = self.body_radius + self.proximity_range;
         let fixed = self
             .arena
             .nearest(centre)
-            .filter(|nearest| nearest.distance <= fixed_reach);
-        out.extend(fixed.map(|nearest| nearest.towards * (nearest.distance - self.body_radius).max(TOUCH)));
+            .filter(|nearest| nearest.distance <= at_most(fixed_reach));
+        out.extend(fixed.map(|nearest| nearest.towards * (nearest.distance - self.body_radius).max(touch)));
     }
 
     #[cfg(test)]

@@ -5,19 +5,18 @@ use std::f64::consts::TAU;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::control::{PhaseConfig, Phases, Rhythm};
+use super::control::{ControlConfig, Phases, Rhythm};
 use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
-use crate::geometry::{Vec2, direction, unit};
+use crate::geometry::{Vec2, clamp_length, direction, unit};
 use crate::quantity::{NonNegative, Positive};
 
 /// Where a robot goes next, by robot and leg: two words each.
 const LEG: Purpose = Purpose::new("wander.leg");
 
-/// A waypoint is reached from this near, metres.
-const REACH: f64 = 0.05;
-
-/// A robot that is not at its waypoint after this many times the way's time is blocked, and takes another one.
+/// A robot that is not at its waypoint after this many times the way's time, and a control step, is blocked, and takes another one.
 const PATIENCE: f64 = 2.0;
+/// A robot that comes this much nearer in the control step in which it was to arrive has arrived, as well as its drive allows.
+const ARRIVED: f64 = 0.5;
 
 /// How robots move whose protocol does not say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,14 +25,16 @@ pub enum WanderConfig {
     /// Not at all.
     #[default]
     Still,
-    /// Straight on, in a direction drawn anew for each leg.
+    /// Straight on, in a direction drawn anew for each leg, and reflected by the arena's walls: in the long run a robot is anywhere
+    /// with the same probability.
     RandomWalk {
         /// Speed, m/s, at most `motion.max_speed`.
         speed: Positive,
         /// Seconds between changes of direction.
         leg: Positive,
     },
-    /// Straight to a place drawn uniformly in the arena, then to another one.
+    /// Straight to a place drawn uniformly in the arena, a body's width from its walls, then to another one: in the long run a
+    /// robot is more often in the middle than near walls.
     RandomWaypoint {
         /// Speed, m/s, at most `motion.max_speed`.
         speed: Positive,
@@ -62,20 +63,28 @@ impl WanderConfig {
 #[derive(Clone, Copy, Debug)]
 pub struct Ground {
     config: WanderConfig,
-    /// Half the width and height within which waypoints lie, metres.
+    /// Half the width and height that a robot's centre can reach, metres.
+    room: Vec2,
+    /// The same for waypoints.
     half: Vec2,
+    /// From one control step to the next, seconds.
+    period: f64,
     phases: Phases,
     draws: KeyedStreams,
 }
 
 impl Ground {
-    /// Robots move as `config` says, between waypoints at most `half` from the arena's centre in each axis, metres.
+    /// Robots of `body_radius` metres move as `config` says in an empty arena of `size` metres, with control steps as `control`
+    /// has them. Waypoints leave a body's width to the walls.
     #[must_use]
-    pub fn new(config: WanderConfig, half: Vec2, phases: Phases, streams: Streams) -> Self {
+    pub fn new(config: WanderConfig, size: Vec2, body_radius: f64, control: &ControlConfig, streams: Streams) -> Self {
+        let leaving = |margin: f64| (size / 2.0).add_scalar(-margin).sup(&Vec2::zeros());
         Self {
             config,
-            half,
-            phases,
+            room: leaving(body_radius),
+            half: leaving(2.0 * body_radius),
+            period: control.period.get(),
+            phases: Phases::new(control.phase, streams),
             draws: streams.keyed(LEG),
         }
     }
@@ -83,9 +92,8 @@ impl Ground {
     /// Robots that stand still.
     #[must_use]
     pub fn still() -> Self {
-        let streams = Streams::new(0, 0);
-        let phases = Phases::new(PhaseConfig::Together, streams);
-        Self::new(WanderConfig::Still, Vec2::zeros(), phases, streams)
+        let control = ControlConfig::default();
+        Self::new(WanderConfig::Still, Vec2::zeros(), 0.0, &control, Streams::new(0, 0))
     }
 }
 
@@ -98,7 +106,17 @@ pub struct Wander {
     aim: Vec2,
     /// When this leg ends, if it does not end earlier.
     until: SimTime,
-    resting: bool,
+    doing: Doing,
+}
+
+/// What a robot between waypoints does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Doing {
+    #[default]
+    Driving,
+    /// This was its way at the last control step, short enough to arrive by this one.
+    Arriving(Vec2),
+    Resting,
 }
 
 impl Wander {
@@ -112,26 +130,62 @@ impl Wander {
                     let [angle, _] = self.draw(ground, robot);
                     self.aim = unit(angle * TAU);
                 }
-                Some(self.aim * speed.get())
+                Some(self.stride(ground, position, speed.get()))
             }
             WanderConfig::RandomWaypoint { speed, pause } => {
-                let arrived = self.legs > 0 && !self.resting && (self.aim - position).norm() <= REACH;
-                if arrived {
-                    self.resting = true;
+                let speed = speed.get();
+                if self.has_arrived(position) {
+                    self.doing = Doing::Resting;
                     self.until = now + Span::from_secs(pause.get());
                 }
                 if now >= self.until {
-                    self.resting = false;
+                    self.doing = Doing::Driving;
                     let [x, y] = self.draw(ground, robot);
                     let [x, y] = [x, y].map(|share| 2.0 * share - 1.0);
                     self.aim = Vec2::new(x * ground.half.x, y * ground.half.y);
-                    let time = (self.aim - position).norm() / speed.get();
+                    let time = (self.aim - position).norm() / speed + ground.period;
                     self.until = now + Span::from_secs(PATIENCE * time);
                 }
-                let moving = f64::from(u8::from(!self.resting));
-                Some(direction(self.aim - position) * speed.get() * moving)
+                Some(self.approach(ground, position, speed))
             }
         }
+    }
+
+    /// The velocity of a walker at `position`. The walls reflect it: where it would cross one before the next control step, it makes
+    /// for the place where a ball would be by then.
+    fn stride(&mut self, ground: &Ground, position: Vec2, speed: f64) -> Vec2 {
+        let mut velocity = self.aim * speed;
+        for axis in [0, 1] {
+            let (place, room) = (position[axis], ground.room[axis]);
+            let end = place + velocity[axis] * ground.period;
+            if end.abs() > room && end * velocity[axis] > 0.0 {
+                self.aim[axis] = -self.aim[axis];
+                let mirrored = end.signum() * 2.0 * room - end;
+                velocity[axis] = (mirrored.clamp(-room, room) - place) / ground.period;
+            }
+        }
+        clamp_length(velocity, speed)
+    }
+
+    /// The velocity towards the waypoint, from a place near enough such that the next control step finds it there.
+    fn approach(&mut self, ground: &Ground, position: Vec2, speed: f64) -> Vec2 {
+        if self.doing == Doing::Resting {
+            return Vec2::zeros();
+        }
+        let way = self.aim - position;
+        if way.norm() > speed * ground.period {
+            self.doing = Doing::Driving;
+            return direction(way) * speed;
+        }
+        self.doing = Doing::Arriving(way);
+        way / ground.period
+    }
+
+    /// Whether it is at its waypoint, or has just passed it. One that was still turning goes on.
+    fn has_arrived(&self, position: Vec2) -> bool {
+        let Doing::Arriving(way) = self.doing else { return false };
+        let left = self.aim - position;
+        left.dot(&way) <= 0.0 || left.norm() <= ARRIVED * way.norm()
     }
 
     /// The end of the leg that begins at `now`: the first one ends early by the robot's phase, later ones are as long on average
@@ -156,11 +210,14 @@ impl Wander {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::protocol::control::PhaseConfig;
 
     fn ground(config: WanderConfig) -> Ground {
-        let streams = Streams::new(5, 0);
-        let phases = Phases::new(PhaseConfig::Together, streams);
-        Ground::new(config, Vec2::new(4.0, 3.0), phases, streams)
+        let control = ControlConfig {
+            phase: PhaseConfig::Together,
+            ..ControlConfig::default()
+        };
+        Ground::new(config, Vec2::new(8.2, 6.2), 0.05, &control, Streams::new(5, 0))
     }
 
     /// Places of a robot at every 0.1 s.
@@ -228,5 +285,142 @@ mod tests {
             wander.velocity(&ground, ActorId(3), now, Vec2::zeros());
         }
         assert!(wander.legs > 2, "{} legs of a robot that cannot move", wander.legs);
+    }
+
+    /// Where each of `robots` robots, which obey to the letter, is after so many control steps of `period` seconds.
+    fn places_after(config: WanderConfig, period: f64, steps: u64, robots: u32) -> Vec<Vec2> {
+        let control = ControlConfig {
+            period: Positive::new(period),
+            ..ControlConfig::default()
+        };
+        let ground = Ground::new(config, Vec2::new(8.2, 6.2), 0.1, &control, Streams::new(5, 0));
+        let place = |robot| {
+            let (mut wander, mut position) = (Wander::default(), Vec2::zeros());
+            for step in 0..steps {
+                let now = SimTime::ZERO + control.period() * step;
+                position += wander.velocity(&ground, ActorId(robot), now, position).unwrap() * period;
+            }
+            position
+        };
+        (0..robots).map(place).collect()
+    }
+
+    /// How the numbers of `places` in 8 columns and 6 rows of a room of 2 `half` deviate from `expected` shares: chi-square.
+    fn chi_square(places: &[Vec2], half: Vec2, expected: &[f64; 48]) -> f64 {
+        let mut counts = [0.0; 48];
+        for place in places {
+            let cell = |axis: usize, cells: f64| {
+                let share = (place[axis] / half[axis] + 1.0) / 2.0;
+                (share * cells).clamp(0.0, cells - 1.0) as usize
+            };
+            counts[cell(1, 6.0) * 8 + cell(0, 8.0)] += 1.0;
+        }
+        let number = places.len() as f64;
+        counts
+            .iter()
+            .zip(expected)
+            .map(|(count, share)| (count - number * share).powi(2) / (number * share))
+            .sum()
+    }
+
+    /// One place of each of 4,800 robots, so that all are independent: 100 a cell of 48. With 47 degrees of freedom chi-square is
+    /// below 82.7 with probability 0.999. Of them a share is within 0.2 m of a wall: a binomial, four σ. Legs of 4 s at 1 m/s mix
+    /// a room of 8 × 6 m within 80 s (its slowest mode falls off within L²/π²D = 64/(9.9 · 2) = 3.2 s).
+    #[test]
+    fn a_walker_is_in_the_long_run_anywhere_with_the_same_probability_walls_included() {
+        let config = WanderConfig::RandomWalk {
+            speed: Positive::new(1.0),
+            leg: Positive::new(4.0),
+        };
+        let half = Vec2::new(4.0, 3.0);
+        for period in [0.1, 0.3, 1.0] {
+            let places = places_after(config, period, (80.0 / period) as u64, 4800);
+            assert!(places.iter().all(|place| place.x.abs() <= 4.0 && place.y.abs() <= 3.0));
+            let deviation = chi_square(&places, half, &[1.0 / 48.0; 48]);
+            assert!(deviation < 82.7, "period {period} s: {deviation}");
+            let near = places.iter().filter(|place| (half - place.abs()).min() < 0.2).count() as f64;
+            let share: f64 = 1.0 - (7.6 * 5.6) / (8.0 * 6.0);
+            let error = (4800.0 * share * (1.0 - share)).sqrt();
+            assert!(
+                (near - 4800.0 * share).abs() < 4.0 * error,
+                "period {period} s: {near} near a wall"
+            );
+        }
+    }
+
+    /// The density of random waypoints in a convex room (Hyytiä, Lassila and Virtamo 2006) is at r proportional to
+    /// ∫ a₁ a₂ (a₁ + a₂) dφ over half a turn, a₁ and a₂ being the ways from r to the rim in the directions φ and φ + π.
+    fn waypoint_shares(half: Vec2) -> [f64; 48] {
+        let way = |from: Vec2, along: Vec2| {
+            let axis = |axis: usize| (half[axis] - from[axis] * along[axis].signum()) / along[axis].abs();
+            axis(0).min(axis(1))
+        };
+        let density = |at: Vec2| -> f64 {
+            let turn = |n: u32| {
+                let along = unit((f64::from(n) + 0.5) / 180.0 * TAU / 2.0);
+                let (ahead, behind) = (way(at, along), way(at, -along));
+                ahead * behind * (ahead + behind)
+            };
+            (0..180).map(turn).sum()
+        };
+        let mut shares = [0.0; 48];
+        for (index, share) in shares.iter_mut().enumerate() {
+            let (column, row) = ((index % 8) as f64, (index / 8) as f64);
+            for sample in 0..100 {
+                let (x, y) = (
+                    column + (f64::from(sample % 10) + 0.5) / 10.0,
+                    row + (f64::from(sample / 10) + 0.5) / 10.0,
+                );
+                *share += density(Vec2::new((x / 4.0 - 1.0) * half.x, (y / 3.0 - 1.0) * half.y));
+            }
+        }
+        let all: f64 = shares.iter().sum();
+        shares.map(|share| share / all)
+    }
+
+    /// Waypoints leave a body's width to the walls: they lie within 3.9 × 2.9 m of the centre. The least of 4,800 a cell is 17.
+    #[test]
+    fn robots_between_waypoints_are_where_the_known_density_has_them_whatever_the_period() {
+        let half = Vec2::new(3.9, 2.9);
+        let shares = waypoint_shares(half);
+        for period in [0.1, 0.2, 0.5, 1.0] {
+            let config = WanderConfig::RandomWaypoint {
+                speed: Positive::new(0.5),
+                pause: NonNegative::new(0.0),
+            };
+            let places = places_after(config, period, (160.0 / period) as u64, 4800);
+            let deviation = chi_square(&places, half, &shares);
+            assert!(deviation < 82.7, "period {period} s: {deviation}");
+        }
+    }
+
+    #[test]
+    fn all_walkers_turn_at_instants_of_their_own_unless_they_are_together() {
+        let config = WanderConfig::RandomWalk {
+            speed: Positive::new(0.1),
+            leg: Positive::new(3.0),
+        };
+        let first_turns = |phase| {
+            let control = ControlConfig {
+                phase,
+                ..ControlConfig::default()
+            };
+            let ground = Ground::new(config, Vec2::new(80.0, 60.0), 0.05, &control, Streams::new(5, 0));
+            let turn = |robot| {
+                let mut wander = Wander::default();
+                let mut velocity = |step: u64| {
+                    let now = SimTime::ZERO + control.period() * step;
+                    wander.velocity(&ground, ActorId(robot), now, Vec2::zeros()).unwrap()
+                };
+                let first = velocity(0);
+                (1..60).find(|&step| velocity(step) != first).unwrap()
+            };
+            (0..50).map(turn).collect::<std::collections::BTreeSet<u64>>()
+        };
+        assert_eq!(first_turns(PhaseConfig::Together).into_iter().collect::<Vec<_>>(), [30]);
+        assert!(
+            first_turns(PhaseConfig::Random).len() > 15,
+            "50 robots at 30 control steps"
+        );
     }
 }

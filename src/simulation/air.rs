@@ -138,8 +138,10 @@ impl<P: Protocol> Air<P> {
         self.hindrances.clear();
         if faults.trouble_links() {
             let here = world.position(sender, now);
-            let hindrance =
-                |listener: &Listener| faults.link_loss((sender, here), (listener.id, here - listener.sender));
+            let hindrance = |listener: &Listener| {
+                let there = world.position(listener.id, now);
+                faults.link_loss((sender, here), (listener.id, there))
+            };
             self.hindrances.extend(self.listeners.iter().map(hindrance));
         }
         for message in messages {

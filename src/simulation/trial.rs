@@ -12,7 +12,6 @@ use crate::geometry::Vec2;
 use crate::metrics::{Mission, MissionTarget, TrialRecord};
 use crate::motion::{DeployError, deploy};
 use crate::protocol::backbone::{self, BackboneConfig};
-use crate::protocol::control::Phases;
 use crate::protocol::detector::Probe;
 use crate::protocol::heartbeat::{Heartbeat, Settings};
 use crate::protocol::rumor;
@@ -106,13 +105,12 @@ fn run(
     Ok(record)
 }
 
-/// Where robots of a protocol without a motion of its own go: a body's width of the walls is left to them.
+/// Where robots of a protocol without a motion of its own go.
 fn ground(scenario: &Scenario, streams: Streams) -> Ground {
     let (width, height) = &scenario.arena.size;
-    let margin = 2.0 * scenario.motion.body_radius.get();
-    let half = [width, height].map(|size| (size.get() / 2.0 - margin).max(0.0));
-    let phases = Phases::new(scenario.control.phase, streams);
-    Ground::new(scenario.wander, Vec2::new(half[0], half[1]), phases, streams)
+    let size = Vec2::new(width.get(), height.get());
+    let body_radius = scenario.motion.body_radius.get();
+    Ground::new(scenario.wander, size, body_radius, &scenario.control, streams)
 }
 
 /// Robots whose messages carry what their detectors say by `P`.

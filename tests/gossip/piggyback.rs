@@ -3,6 +3,7 @@
 use desim::engine::{SimTime, Span};
 use desim::geometry::{Pose, Vec2};
 use desim::metrics::{TopicFates, TrialRecord};
+use desim::protocol::control::PhaseConfig;
 use desim::protocol::{CodecError, Input, Note, Output, Protocol, Role, Topic, Wake};
 use desim::quantity::{NonNegative, Positive, Probability};
 use desim::radio::{LatencyConfig, LossConfig};
@@ -75,6 +76,7 @@ const STEPS: u64 = 501;
 fn chat(piggyback: bool, loss: LossConfig) -> TrialRecord {
     let mut setup = Setup::lasting(Span::from_secs(50.0));
     setup.piggyback = piggyback;
+    setup.control.phase = PhaseConfig::Together;
     setup.radio.loss = loss;
     setup.radio.latency = LatencyConfig::Exponential {
         mean: Positive::new(0.1),

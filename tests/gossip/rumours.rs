@@ -85,7 +85,9 @@ fn pulled_it_takes_as_long_at_the_rate_at_which_both_request_and_answer_arrive()
 fn a_broadcast_informs_each_robot_in_range_with_the_probability_that_it_arrives() {
     let scenario = Scenario {
         time_limit: desim::quantity::Positive::new(0.15),
-        ..scenario("protocol: Rumor(sources: Robots([4])), gossip: (relay: (interval: 50.0))")
+        ..scenario(
+            "control: (phase: Together), protocol: Rumor(sources: Robots([4])), gossip: (relay: (interval: 50.0))",
+        )
     };
     let records = run(&scenario, 300);
     let informed = |record: &TrialRecord| record.spread[0].informed.iter().flatten().count() - 1;

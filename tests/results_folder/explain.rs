@@ -17,7 +17,7 @@ use tokio_util::sync::CancellationToken;
 
 const ROBOTS: u32 = 6;
 
-/// Robots that stand in range of each other, loss and failures of every kind as `more` has it.
+/// Robots that stand in range of each other and say their statuses at every tenth of a second, loss and failures of every kind as `more` has it.
 fn scenario(more: &str) -> Scenario {
     let text = text(more);
     parse("still.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
@@ -26,7 +26,7 @@ fn scenario(more: &str) -> Scenario {
 fn text(more: &str) -> String {
     format!(
         "Scenario(name: \"still\", time_limit: 20.0, swarm: (robots: {ROBOTS}, deploy: Cluster(radius: 0.5)), \
-         protocol: Heartbeat, detector: Timeout(0.35), {more})"
+         control: (phase: Together), protocol: Heartbeat, detector: Timeout(0.35), {more})"
     )
 }
 

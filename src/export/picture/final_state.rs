@@ -5,7 +5,7 @@ use svg::Document;
 use super::canvas::Canvas;
 use super::style::{self, FAILED, LINK, TARGET};
 use super::{Scene, obstacles, subtitle};
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 use crate::metrics::{RobotState, TrialRecord};
 
 /// Above this many robots their numbers would hide them.
@@ -74,7 +74,7 @@ fn links(robots: &[RobotState], range: f64) -> impl Iterator<Item = (Vec2, Vec2)
         let from = robot.pose.position;
         let others = robots[index + 1..].iter().map(|other| other.pose.position);
         others
-            .filter(move |to| (to - from).norm() <= range)
+            .filter(move |to| (to - from).norm() <= at_most(range))
             .map(move |to| (from, to))
     })
 }

@@ -2,7 +2,7 @@
 
 use petgraph::unionfind::UnionFind;
 
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 
 use super::lanczos::least_positive_eigenvalue;
 
@@ -35,11 +35,12 @@ impl Graph {
         Self { vertices, edges }
     }
 
-    /// The unit-disk graph of the paper's section 3.1: an edge where two positions are at most `range` metres apart.
+    /// The unit-disk graph of the paper's section 3.1: an edge where two positions are [at most](at_most) `range` metres apart.
     /// Vertices are numbered along the longer side of the swarm, not by robot: neighbours then have near numbers, which
     /// makes the search a sweep and the Laplacian's factor narrow.
     #[must_use]
     pub fn within_range(positions: &[Vec2], range: f64) -> Self {
+        let range = at_most(range);
         let axis = longer_axis(positions);
         let mut along = positions.to_vec();
         along.sort_by(|a, b| a[axis].total_cmp(&b[axis]));

@@ -37,11 +37,11 @@ pub fn target(way: Vec2, gain: f64) -> Vec2 {
     way * gain
 }
 
-/// u^lj (paper eq. 17): away from the other robot below `delta`, towards it beyond. `epsilon` is in m²/s.
+/// u^lj (paper eq. 17): away from the other robot below `delta`, towards it beyond. `epsilon` is in m²/s. Two robots never stand in
+/// one place, though a sensed distance may come out as zero: it counts as a fiftieth of `delta` at least.
 #[must_use]
 pub fn lennard_jones(other: Vec2, epsilon: f64, delta: f64) -> Vec2 {
-    // Two robots never stand in one place; a sensed distance may still come out as zero.
-    let squared = other.norm_squared().max(1e-4);
+    let squared = other.norm_squared().max((delta / 50.0).powi(2));
     let ratio = delta * delta / squared;
     other * (-epsilon / squared * (ratio * ratio - ratio))
 }

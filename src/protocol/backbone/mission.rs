@@ -1,12 +1,13 @@
 //! What every robot is given before the start: the targets, the root, the workers, and the settings in working units.
 
-use crate::engine::{ActorId, Streams};
-use crate::geometry::{Pose, Vec2, direction};
+use crate::engine::{ActorId, Span, Streams};
+use crate::geometry::{Pose, Vec2, at_least, direction};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::{GossipConfig, Repetition, RetransmitConfig, TimeToLiveConfig, Turns};
 
 use super::config::BackboneConfig;
+use super::sidestep::Patience;
 
 /// The mission: the same for all robots, and known to all from the start (paper section 4.1).
 #[derive(Debug)]
@@ -120,7 +121,7 @@ pub struct Parameters {
     pub backbone_avoidance_range: f64,
     pub avoidance_gain: f64,
     pub rest_speed: f64,
-    pub stall_steps: u64,
+    pub patience: Patience,
     pub recruit_ratio: f64,
     pub request_patience: u64,
     pub refusal_memory: u64,
@@ -137,6 +138,7 @@ pub struct Parameters {
     pub strand_lifetime: u64,
     pub hop_limit: usize,
     pub healing_patience: u64,
+    pub precedence: u64,
     pub reserve: u8,
     pub silence_steps: u64,
     pub detector: DetectorConfig,
@@ -231,7 +233,7 @@ fn parallel_chains(config: &BackboneConfig, target: u8, displacement: Vec2, link
 /// The fewest relays that bring a worker within `threshold` of a target `distance` away in hops of at most `safe`.
 #[must_use]
 pub fn relays_needed(distance: f64, threshold: f64, safe: f64) -> usize {
-    let hops = ((distance - threshold) / safe - 1e-9).ceil();
+    let hops = at_least((distance - threshold) / safe).ceil();
     (hops as usize).saturating_sub(1)
 }
 
@@ -248,8 +250,9 @@ impl Parameters {
         let control_period = control.period();
         let phases = Phases::new(control.phase, streams);
         let turns = |timing, rhythm| Turns::new(timing, rhythm, phases, streams);
-        let steps = |seconds: f64| (seconds / control_period.as_secs()).ceil() as u64;
+        let steps = |seconds: f64| Span::from_secs(seconds).in_periods(control_period);
         let law = &config.motion;
+        let status_repetition = gossip.status.repetition(control_period);
         let strand_repetition = gossip.strand.repetition(control_period);
         let request = gossip.request.timing(control_period);
         Self {
@@ -262,13 +265,17 @@ impl Parameters {
             push_limit: law.push_limit.get(),
             lane_gain: law.lane_gain.get(),
             lane_limit: law.lane_limit.get(),
-            lj_gain: config.lj_epsilon.get() * law.lj_speed.get(),
+            // In the paper, where it settles at half a metre, distances are in metres: in units of twice what it settles at.
+            lj_gain: config.lj_epsilon.get() * law.lj_speed.get() * (2.0 * config.lj_delta.get()),
             lj_delta: config.lj_delta.get(),
             avoidance_range: law.avoidance_range.get(),
             backbone_avoidance_range: law.backbone_avoidance_range.get(),
             avoidance_gain: law.avoidance_gain.get(),
             rest_speed: law.rest_speed.get(),
-            stall_steps: steps(law.stall_time.get()),
+            patience: Patience {
+                stall_steps: steps(law.stall_time.get()),
+                progress: config.safe_distance.get() / SAFE_DISTANCES_OF_PROGRESS,
+            },
             recruit_ratio: config.recruiting.distance_ratio.get(),
             // Patience counts repetitions too, so that rare gossip does not undo every join.
             request_patience: steps(config.recruiting.patience.get()).max(REPETITIONS * request.longest()),
@@ -279,7 +286,7 @@ impl Parameters {
             shortage_patience: steps(config.shortage.patience.get()),
             visit: steps(config.shortage.visit.get()),
             status_turns: turns(gossip.status.timing(control_period), Rhythm::Status),
-            status_repetition: gossip.status.repetition(control_period),
+            status_repetition,
             strand_turns: turns(gossip.strand.timing(control_period), Rhythm::Strand),
             strand_repetition,
             request_turns: turns(request, Rhythm::Request),
@@ -290,6 +297,7 @@ impl Parameters {
                 TimeToLiveConfig::Seconds(seconds) => steps(seconds.get()),
             },
             hop_limit: gossip.strand.hop_limit.into(),
+            precedence: PRECEDENCE * status_repetition.longest_pause(),
             healing_patience: steps(config.healing.patience.get()),
             silence_steps: steps(detector.usual_silence(circumstances).as_secs()),
             reserve: config.healing.reserve,
@@ -308,13 +316,18 @@ impl Parameters {
     }
 }
 
+/// A robot has come on once it has moved by the safe distance over this: 1 cm of the paper's 1.4 m.
+const SAFE_DISTANCES_OF_PROGRESS: f64 = 140.0;
+
+/// Statuses for which a networker leaves it to each one nearer to the target to take over from a lost worker.
+const PRECEDENCE: u64 = 10;
+
 /// Repetitions of a message that may be lost before a join is given up.
 const REPETITIONS: u64 = 5;
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::Span;
 
     fn mission(links: u8, poses: &[(f64, f64)]) -> Mission {
         let config: BackboneConfig =

@@ -239,9 +239,14 @@ impl Backbone {
         let parameters = &self.known.mission.parameters;
         let desired = forces::settle(desired, parameters.rest_speed);
         let velocity = if self.may_step_aside() {
-            let stall = parameters.stall_steps;
-            self.sidestep
-                .adjust(desired, self.known.position, self.known.step, stall, &mut input.random)
+            let patience = parameters.patience;
+            self.sidestep.adjust(
+                desired,
+                self.known.position,
+                self.known.step,
+                patience,
+                &mut input.random,
+            )
         } else {
             self.sidestep.rest(self.known.position, self.known.step);
             desired

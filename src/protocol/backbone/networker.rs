@@ -50,9 +50,6 @@ impl Orphan {
     }
 }
 
-/// Control steps for which a networker leaves it to each one nearer to the target to take over from a lost worker.
-const PRECEDENCE: u64 = 10;
-
 impl Networker {
     /// A joiner that accepted request number `sequence` of `child` at control step `step`.
     #[must_use]
@@ -184,7 +181,7 @@ impl Networker {
         let chain = self.slot.chain;
         let target = view.mission.chain(chain).target;
         let patience = if self.outer.is_empty() {
-            PRECEDENCE * view.networkers_nearer_to(target) as u64
+            view.parameters().precedence * view.networkers_nearer_to(target) as u64
         } else {
             view.parameters().healing_patience
         };

@@ -7,10 +7,15 @@ use rand_philox::Philox;
 
 use crate::geometry::{Vec2, unit};
 
-/// Less than this, in metres, within the stall time is no progress.
-const PROGRESS: f64 = 0.01;
 /// Share of the stall time for which a robot steps aside.
 const DURATION: f64 = 0.33;
+
+/// When a robot is stuck: after so many control steps in which it came less than `progress` metres farther.
+#[derive(Clone, Copy, Debug)]
+pub struct Patience {
+    pub stall_steps: u64,
+    pub progress: f64,
+}
 
 /// Watches one robot's progress.
 #[derive(Debug, Default)]
@@ -25,12 +30,20 @@ pub struct Sidestep {
 
 impl Sidestep {
     /// The velocity to command when `desired` is wanted at `position` on control step `step`: another one while the
-    /// robot steps aside, after `stall_steps` without progress.
-    pub fn adjust(&mut self, desired: Vec2, position: Vec2, step: u64, stall_steps: u64, random: &mut Philox) -> Vec2 {
+    /// robot steps aside, after `patience` without progress.
+    pub fn adjust(
+        &mut self,
+        desired: Vec2,
+        position: Vec2,
+        step: u64,
+        patience: Patience,
+        random: &mut Philox,
+    ) -> Vec2 {
+        let Patience { stall_steps, progress } = patience;
         if step < self.until {
             return self.aside * desired.norm();
         }
-        let progressed = (position - self.anchor).norm() >= PROGRESS;
+        let progressed = (position - self.anchor).norm() >= progress;
         if progressed || desired == Vec2::zeros() {
             self.anchor = position;
             self.since = step;
@@ -55,13 +68,18 @@ impl Sidestep {
 mod tests {
     use super::*;
 
+    const PATIENCE: Patience = Patience {
+        stall_steps: 30,
+        progress: 0.01,
+    };
+
     #[test]
     fn a_robot_that_wants_to_move_and_does_not_steps_aside_for_a_while() {
         let mut sidestep = Sidestep::default();
         let mut random = Philox::from_u64_seed(1);
         let desired = Vec2::new(0.02, 0.0);
         let commands: Vec<Vec2> = (0..60)
-            .map(|step| sidestep.adjust(desired, Vec2::zeros(), step, 30, &mut random))
+            .map(|step| sidestep.adjust(desired, Vec2::zeros(), step, PATIENCE, &mut random))
             .collect();
         let aside = commands.iter().filter(|command| **command != desired).count();
         assert_eq!(aside, 9);
@@ -75,9 +93,15 @@ mod tests {
         let desired = Vec2::new(0.02, 0.0);
         sidestep.rest(Vec2::zeros(), 100);
         for step in 101..=130 {
-            assert_eq!(sidestep.adjust(desired, Vec2::zeros(), step, 30, &mut random), desired);
+            assert_eq!(
+                sidestep.adjust(desired, Vec2::zeros(), step, PATIENCE, &mut random),
+                desired
+            );
         }
-        assert_ne!(sidestep.adjust(desired, Vec2::zeros(), 131, 30, &mut random), desired);
+        assert_ne!(
+            sidestep.adjust(desired, Vec2::zeros(), 131, PATIENCE, &mut random),
+            desired
+        );
     }
 
     #[test]
@@ -90,7 +114,7 @@ mod tests {
             } else {
                 (Vec2::zeros(), Vec2::new(0.2, 0.0))
             };
-            assert_eq!(sidestep.adjust(desired, position, step, 30, &mut random), desired);
+            assert_eq!(sidestep.adjust(desired, position, step, PATIENCE, &mut random), desired);
         }
     }
 }

@@ -22,8 +22,7 @@ impl Timing {
     /// An `interval` rounded up to whole control periods, and `jitter` as a share of it rounded down to them.
     #[must_use]
     pub fn new(interval: Positive, jitter: Probability, control_period: Span) -> Self {
-        let interval = Span::from_secs(interval.get()).as_nanos();
-        let every = interval.div_ceil(control_period.as_nanos().max(1)).max(1);
+        let every = Span::from_secs(interval.get()).in_periods(control_period).max(1);
         let places = (jitter.get() * every as f64) as u64;
         Self {
             every,

@@ -11,7 +11,7 @@ use super::bandwidth::WAYS;
 use super::chart::{axis, chart, shown, words};
 use super::figure::{Figure, Panel};
 use super::table::{Cell, DataTable};
-use crate::geometry::Vec2;
+use crate::geometry::{Vec2, at_most};
 use crate::metrics::TrialRecord;
 use crate::scenario::ProtocolConfig;
 
@@ -194,7 +194,7 @@ fn links(record: &TrialRecord, range: f64) -> Box<Scatter<Option<f64>, Option<f6
         let from = robot.pose.position;
         for other in &record.robots[index + 1..] {
             let to = other.pose.position;
-            if (to - from).norm() <= range {
+            if (to - from).norm() <= at_most(range) {
                 x.extend([Some(shown(from.x)), Some(shown(to.x)), None]);
                 y.extend([Some(shown(from.y)), Some(shown(to.y)), None]);
             }
