@@ -65,7 +65,7 @@ struct Share {
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
     let needs = Needs::of(scenario);
     let memory = needs.memory(limits::MEMORY, "more than desim goes along with");
-    let time = needs.time(needs.events, limits::EVENTS, "a trial", "which would take weeks");
+    let time = time(needs.events, limits::EVENTS, "a trial", "which would take weeks");
     memory.into_iter().chain(time).collect()
 }
 
@@ -77,7 +77,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
         "and so does each other trial that runs at the same time",
     );
     let all = needs.events * f64::from(scenario.trials);
-    let time = needs.time(all, limits::MANY_EVENTS, "all trials", "which may take days");
+    let time = time(all, limits::MANY_EVENTS, "all trials", "which may take days");
     memory.into_iter().chain(time).collect()
 }
 
@@ -93,15 +93,6 @@ impl Needs {
                 largest.what
             );
             Problem::new(largest.field, message, largest.help).with(largest.also)
-        })
-    }
-
-    fn time(&self, events: f64, most: f64, whose: &str, verdict: &str) -> Option<Problem> {
-        (events > most).then(|| {
-            let message = format!("{whose} may have {events:.0e} events, {verdict}");
-            let help = "make `time_limit` shorter, what repeats less frequent, or the swarm smaller or thinner";
-            let also = ["swarm.robots", "control.period", "radio.range", "gossip", "trials"];
-            Problem::new("time_limit", message, help).with(&also)
         })
     }
 
@@ -176,6 +167,16 @@ impl Needs {
             events: view.events(),
         }
     }
+}
+
+/// What to say of `events` if they are more than `most`.
+fn time(events: f64, most: f64, whose: &str, verdict: &str) -> Option<Problem> {
+    (events > most).then(|| {
+        let message = format!("{whose} may have {events:.0e} events, {verdict}");
+        let help = "make `time_limit` shorter, what repeats less frequent, or the swarm smaller or thinner";
+        let also = ["swarm.robots", "control.period", "radio.range", "gossip", "trials"];
+        Problem::new("time_limit", message, help).with(&also)
+    })
 }
 
 /// Bytes as people say them.

@@ -202,7 +202,6 @@ mod tests {
             digest: 0,
             robot_steps: vec![1; 5],
             poses: vec![Pose::default(); 5],
-            robot_steps: vec![1; 5],
         });
         let sample = |(place, stands): (usize, &[Stand; TARGETS])| ConnectivitySample {
             at: at(place),
