@@ -246,7 +246,7 @@ fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_
             .find(|found| found.path.as_deref() == Some(field));
         let found = found.unwrap_or_else(|| panic!("{given:?}: {report}"));
         assert!(
-            found.message.contains("GB of memory") && found.message.contains(what),
+            found.message.contains("B of memory") && found.message.contains(what),
             "{report}"
         );
         assert!(found.help.is_some());

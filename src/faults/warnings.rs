@@ -94,12 +94,12 @@ impl Look<'_> {
             if only_owner && others && !named(role) {
                 self.report(
                     "roles",
-                    format!("robot {owner} is always the {role}, and never has one of these roles"),
+                    &format!("robot {owner} is always the {role}, and never has one of these roles"),
                 );
             } else if without_owner && named(role) && !others {
                 self.report(
                     "roles",
-                    format!("only robot {owner} is ever the {role}, and it is not among the robots"),
+                    &format!("only robot {owner} is ever the {role}, and it is not among the robots"),
                 );
             }
         }
@@ -108,7 +108,7 @@ impl Look<'_> {
     fn moment(&mut self, path: &str, at: NonNegative) {
         let (at, end) = (at.get(), self.stage.time_limit);
         if at >= end {
-            self.report(path, format!("it comes at {at} s, and a trial ends at {end} s"));
+            self.report(path, &format!("it comes at {at} s, and a trial ends at {end} s"));
         }
     }
 
@@ -116,7 +116,7 @@ impl Look<'_> {
         let from = during.bounds().0.as_secs();
         let end = self.stage.time_limit;
         if from >= end {
-            self.report(path, format!("it begins at {from} s, and a trial ends at {end} s"));
+            self.report(path, &format!("it begins at {from} s, and a trial ends at {end} s"));
         }
     }
 
@@ -127,14 +127,14 @@ impl Look<'_> {
             let seconds = seconds.get();
             self.report(
                 "lasts",
-                format!("{seconds} s is over as it begins, for time counts nanoseconds"),
+                &format!("{seconds} s is over as it begins, for time counts nanoseconds"),
             );
         }
     }
 
     fn chance(&mut self, path: &str, chance: Probability) {
         if chance.get() <= 0.0 {
-            self.report(path, "its probability is 0".to_owned());
+            self.report(path, "its probability is 0");
         }
     }
 
@@ -153,7 +153,7 @@ impl Look<'_> {
             }
         };
         if beyond > 0.0 {
-            self.report(path, "the region lies outside of where robots can be".to_owned());
+            self.report(path, "the region lies outside of where robots can be");
         }
     }
 
@@ -163,11 +163,11 @@ impl Look<'_> {
         let side = |x: f64, y: f64| along.perp(&(Vec2::new(x * half.x, y * half.y) - from));
         let sides = [side(-1.0, -1.0), side(-1.0, 1.0), side(1.0, -1.0), side(1.0, 1.0)];
         if sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0) {
-            self.report("line", "all of the arena lies on one side of the line".to_owned());
+            self.report("line", "all of the arena lies on one side of the line");
         }
     }
 
-    fn report(&mut self, path: &str, why: String) {
+    fn report(&mut self, path: &str, why: &str) {
         let message = format!("this fault never acts: {why}");
         self.found.push((format!("[{}].{path}", self.index), message));
     }

@@ -85,7 +85,7 @@ impl Mission {
         let targets = self.targets.iter().enumerate();
         let stands = targets.map(|(target, MissionTarget { links, .. })| {
             let worker_m = Some(self.nearest_worker(target, scene)).filter(|metres| metres.is_finite());
-            let holders = || self.holders(target, scene).into_iter();
+            let holders = || self.holders(target, scene);
             let state = match worker_m {
                 None => TargetState::NoWorker,
                 Some(metres) if metres > self.reach => TargetState::Away,

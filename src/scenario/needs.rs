@@ -13,6 +13,7 @@ use super::{ProtocolConfig, Scenario, limits};
 use crate::engine::Span;
 use crate::faults::{LastsConfig, WhenConfig};
 use crate::motion::DeployConfig;
+use crate::protocol::control::WakeConfig;
 use crate::protocol::detector::DetectorConfig;
 use crate::protocol::gossip::FanOutConfig;
 use crate::quantity::Finite;
@@ -42,8 +43,6 @@ const TOPIC: f64 = 250.0;
 /// Of a finished trial that waits for the others, and the share of its records that it keeps.
 const TRIAL: f64 = 70_000.0;
 const KEPT: f64 = 0.3;
-/// Losses in a row that are counted one by one: where more are needed, this many already bound their probability.
-const COUNTED: f64 = 10_000.0;
 
 /// What a scenario asks of a machine.
 struct Needs {
@@ -66,7 +65,7 @@ struct Share {
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
     let needs = Needs::of(scenario);
     let memory = needs.memory(limits::MEMORY, "more than desim goes along with");
-    let time = needs.time(needs.events, limits::EVENTS, "a trial", "which would take weeks");
+    let time = time(needs.events, limits::EVENTS, "a trial", "which would take weeks");
     memory.into_iter().chain(time).collect()
 }
 
@@ -78,7 +77,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
         "and so does each other trial that runs at the same time",
     );
     let all = needs.events * f64::from(scenario.trials);
-    let time = needs.time(all, limits::MANY_EVENTS, "all trials", "which may take days");
+    let time = time(all, limits::MANY_EVENTS, "all trials", "which may take days");
     memory.into_iter().chain(time).collect()
 }
 
@@ -94,15 +93,6 @@ impl Needs {
                 largest.what
             );
             Problem::new(largest.field, message, largest.help).with(largest.also)
-        })
-    }
-
-    fn time(&self, events: f64, most: f64, whose: &str, verdict: &str) -> Option<Problem> {
-        (events > most).then(|| {
-            let message = format!("{whose} may have {events:.0e} events, {verdict}");
-            let help = "make `time_limit` shorter, what repeats less frequent, or the swarm smaller or thinner";
-            let also = ["swarm.robots", "control.period", "radio.range", "gossip", "trials"];
-            Problem::new("time_limit", message, help).with(&also)
         })
     }
 
@@ -179,11 +169,22 @@ impl Needs {
     }
 }
 
+/// What to say of `events` if they are more than `most`.
+fn time(events: f64, most: f64, whose: &str, verdict: &str) -> Option<Problem> {
+    (events > most).then(|| {
+        let message = format!("{whose} may have {events:.0e} events, {verdict}");
+        let help = "make `time_limit` shorter, what repeats less frequent, or the swarm smaller or thinner";
+        let also = ["swarm.robots", "control.period", "radio.range", "gossip", "trials"];
+        Problem::new("time_limit", message, help).with(&also)
+    })
+}
+
 /// Bytes as people say them.
 fn words(bytes: f64) -> String {
     match bytes {
         ..1e9 => format!("{:.0} MB", bytes / 1e6),
         ..1e12 => format!("{:.1} GB", bytes / 1e9),
+        ..1e15 => format!("{:.1} TB", bytes / 1e12),
         _ => format!("{bytes:.1e} bytes"),
     }
 }
@@ -302,10 +303,23 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Copies under way or waiting to be read at once: all that is sent within a latency and a control period, at least once.
+    /// Seconds that an arrival waits at most until its receiver wakes.
+    fn waits(&self) -> f64 {
+        let period = self.scenario.control.period.get();
+        match (&self.scenario.protocol, self.scenario.control.wake) {
+            (_, WakeConfig::OnReception) => 0.0,
+            // Rounds of a Poisson process wake a robot too, and seldom ten times later than on average.
+            (ProtocolConfig::Rumor(rumor), WakeConfig::ControlStep) if rumor.is_poisson() => {
+                period.min(10.0 * self.scenario.gossip.relay.interval.get())
+            }
+            (_, WakeConfig::ControlStep) => period,
+        }
+    }
+
+    /// Copies under way or waiting to be read at once: all that is sent until they are read, and one.
     fn copies(&self) -> f64 {
         let latency = self.scenario.radio.latency.mean().min(self.time_limit);
-        let sent = self.rate() * (latency + self.scenario.control.period.get());
+        let sent = self.rate() * (latency + self.waits());
         self.robots * self.neighbours * (1.0 + sent)
     }
 
@@ -332,6 +346,7 @@ impl<'a> View<'a> {
         let in_range = self.robots * self.neighbours * self.time_limit;
         let scenario = self.scenario;
         let often = match &scenario.detector {
+            DetectorConfig::None => return 0.0,
             DetectorConfig::Swim(swim) => {
                 let range = scenario.radio.range.get();
                 let failing = swim.probe_failure(scenario.radio.loss.mean_loss(range, range));
@@ -351,7 +366,7 @@ impl<'a> View<'a> {
         let radio = &self.scenario.radio;
         let latencies = radio.latency.quantiles(200);
         let spread = latencies[latencies.len() - 1] - latencies[0];
-        let losses = ((silence - spread) / interval - 1e-9).floor().clamp(0.0, COUNTED);
+        let losses = ((silence - spread) / interval - 1e-9).floor().max(0.0);
         let range = radio.range.get();
         // Where loss grows with distance, neither the nearest nor the farthest err most.
         let distances = [0.25, 0.5, 0.75, 0.9, 1.0].map(|share| share * range);
@@ -360,12 +375,7 @@ impl<'a> View<'a> {
             let Some(mut run) = chain.after_arrival() else {
                 return 0.0;
             };
-            for _ in 0..losses as u32 {
-                if run.probability() < f64::MIN_POSITIVE {
-                    break;
-                }
-                run.lose();
-            }
+            run.lose_all(losses as u64);
             chain.arriving() * run.probability() / interval
         });
         rates.into_iter().fold(0.0, f64::max)

@@ -243,7 +243,7 @@ fn render(diagnostics: &[Diagnostic], more: usize, severity: Severity, style: St
         }
     }
     if more > 0 {
-        text.push_str(&format!("  and {more} more\n"));
+        text.extend(["  and ", &more.to_string(), " more\n"]);
     } else if severity == Severity::Error && diagnostics.len() >= limits::DIAGNOSTICS {
         text.push_str("  and perhaps more: reading ends here\n");
     }

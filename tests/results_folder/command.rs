@@ -10,7 +10,7 @@ use assert_cmd::Command;
 use tempfile::{TempDir, tempdir};
 
 const SMALL: &str = "// Who hears whom?\nScenario(name: \"small\", trials: 3, time_limit: 2.0, \
-    swarm: (robots: 5, deploy: Uniform), protocol: Heartbeat)";
+    arena: (size: (3.0, 3.0)), swarm: (robots: 5, deploy: Uniform), protocol: Heartbeat, detector: Timeout(1.0))";
 
 /// An empty folder with the scenario `small.ron`.
 fn place() -> TempDir {

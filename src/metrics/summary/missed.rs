@@ -200,8 +200,8 @@ mod tests {
             simulated: at(samples.len()),
             events: 1,
             digest: 0,
-            poses: vec![Pose::default(); 5],
             robot_steps: vec![1; 5],
+            poses: vec![Pose::default(); 5],
         });
         let sample = |(place, stands): (usize, &[Stand; TARGETS])| ConnectivitySample {
             at: at(place),

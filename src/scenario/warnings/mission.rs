@@ -50,7 +50,7 @@ fn places(scenario: &Scenario, backbone: &BackboneConfig) -> Vec<Problem> {
         && !others.is_empty()
     {
         // They have one radius, and so one remedy.
-        first.message += &format!(", and so it is with {} more", others.len());
+        first.message = format!("{}, and so it is with {} more", first.message, others.len());
         found.truncate(1);
     }
     found

@@ -53,7 +53,7 @@ fn samples(scenario: &Scenario) -> Option<Problem> {
 /// Whether robots watch each other.
 fn watches(scenario: &Scenario) -> bool {
     match scenario.protocol {
-        ProtocolConfig::Backbone(_) | ProtocolConfig::Heartbeat => true,
+        ProtocolConfig::Backbone(_) | ProtocolConfig::Heartbeat => scenario.detector != DetectorConfig::None,
         ProtocolConfig::Rumor(_) => false,
     }
 }
