@@ -50,7 +50,7 @@ pub fn comparison(input: &ComparisonInput) -> String {
     page.entry("results", &input.folder.display().to_string());
     page.entry("", &input.files.join(", "));
     page.line("");
-    page.words("Figures in brackets are 95 % intervals over trials (BCa bootstrap; Greenwood for medians of what may be cut off).");
+    page.words("Figures in brackets are 95 % intervals over trials.");
     page.text
 }
 
@@ -84,10 +84,7 @@ pub(super) fn family(comparison: &Comparison) -> String {
         if family.tests == 1 { "" } else { "s" }
     );
     if family.alike > 0 {
-        words.push_str(&format!(
-            ", without {} of what is the same in every trial",
-            count(family.alike)
-        ));
+        words.push_str(&format!(", without {} of what never differs", count(family.alike)));
     }
     if family.impossible > 0 {
         words.push_str(&format!(

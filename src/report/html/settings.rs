@@ -56,7 +56,7 @@ pub fn by_setting(comparison: &Comparison, figure: &figures::Figure) -> Option<F
         colour: NEUTRAL,
     });
     let caption = format!(
-        "{}; {}. The {} with its 95 % interval (BCa bootstrap).",
+        "{}; {}. The {} with its 95 % interval.",
         capital(&figure.name),
         better(figure),
         match (figure.is_ratio, cut_off(comparison, figure)) {
