@@ -3,7 +3,7 @@
 
     python analysis/check_examples.py FOLDER
 
-FOLDER holds `results/loss20`, `results/crash_and_recover` and the study `results/status_interval`. Blocks in R are run where there is R, and said to be left out where there is
+FOLDER holds `results/loss20`, of an even number of trials, `results/crash_and_recover` and the study `results/status_interval`. Blocks in R are run where there is R, and said to be left out where there is
 none. DuckDB's command line must be beside the Python that runs this, or on the path.
 """
 

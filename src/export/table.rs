@@ -35,6 +35,7 @@ enum Value<R> {
     Count(Get<R, u64>),
     OptionalCount(Get<R, Option<u64>>),
     Key(Get<R, u64>),
+    OptionalKey(Get<R, Option<u64>>),
     F32(Get<R, f32>),
     F64(Get<R, f64>),
     OptionalF64(Get<R, Option<f64>>),
@@ -66,6 +67,8 @@ constructors! {
     optional_count, OptionalCount, Option<u64>;
     /// Numbers that use all of 64 bits.
     key, Key, u64;
+    /// Such numbers, null where there is none.
+    optional_key, OptionalKey, Option<u64>;
     /// Single-precision numbers.
     f32, F32, f32;
     /// Double-precision numbers.
@@ -162,6 +165,7 @@ impl<R> Column<R> {
             Value::Count(_) => leaf(name, Physical::INT64, Repetition::REQUIRED, None),
             Value::OptionalCount(_) => leaf(name, Physical::INT64, Repetition::OPTIONAL, None),
             Value::Key(_) => leaf(name, Physical::INT64, Repetition::REQUIRED, unsigned),
+            Value::OptionalKey(_) => leaf(name, Physical::INT64, Repetition::OPTIONAL, unsigned),
             Value::F32(_) => leaf(name, Physical::FLOAT, Repetition::REQUIRED, None),
             Value::F64(_) => leaf(name, Physical::DOUBLE, Repetition::REQUIRED, None),
             Value::OptionalF64(_) => leaf(name, Physical::DOUBLE, Repetition::OPTIONAL, None),
@@ -197,7 +201,7 @@ impl<R> Column<R> {
             Value::OptionalId(get) => {
                 optional::<Int32Type, _>(group, rows.iter().map(|row| get(row).map(u32::cast_signed)))
             }
-            Value::OptionalCount(get) => {
+            Value::OptionalCount(get) | Value::OptionalKey(get) => {
                 optional::<Int64Type, _>(group, rows.iter().map(|row| get(row).map(u64::cast_signed)))
             }
             Value::Count(get) | Value::Key(get) => {

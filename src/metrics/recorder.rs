@@ -264,7 +264,7 @@ impl Recorder {
         });
         self.series.sample(now, &self.traffic);
         self.trajectories
-            .push((now, positions.iter().map(|p| [p.x as f32, p.y as f32]).collect()));
+            .push((now, positions.iter().map(|p| [p.x, p.y].map(for_pictures)).collect()));
     }
 
     /// λ₂ of `graph`, computed only if the graph differs from the last sample's.
@@ -359,6 +359,11 @@ fn ledger(offered: &[u64], in_flight: &[u64], traffic: &[TrafficRow]) -> Vec<Top
         }
     }
     ledger
+}
+
+/// A coordinate as pictures have it. One beyond what they can hold stays finite: a record must be read back.
+fn for_pictures(coordinate: f64) -> f32 {
+    coordinate.clamp(f32::MIN.into(), f32::MAX.into()) as f32
 }
 
 /// The robots as they ended.
@@ -486,6 +491,22 @@ mod tests {
             [1.0_f32, 0.0].map(f32::to_bits)
         );
         assert_eq!(record.robots[1].role, 1);
+    }
+
+    #[test]
+    fn a_record_from_the_far_side_of_the_universe_is_read_back_as_it_was() {
+        let mut recorder = recorder(None);
+        recorder.sample(SimTime::ZERO, &line(1e39));
+        let record = recorder.finish(end());
+        assert!(
+            record.trajectories[0]
+                .1
+                .iter()
+                .flatten()
+                .all(|coordinate| coordinate.is_finite())
+        );
+        let read: TrialRecord = serde_json::from_str(&serde_json::to_string(&record).unwrap()).unwrap();
+        assert_eq!(read, record);
     }
 
     #[test]

@@ -7,6 +7,9 @@ use crate::quantity::Finite;
 /// A field's path, relative to the section that holds it, and what to do about its value.
 pub type Problem = (String, String);
 
+/// The longest side of an arena in metres: the squares of distances, and their sums, are finite.
+const LONGEST_SIDE: f64 = 1e100;
+
 /// The shortest tick in seconds: time counts nanoseconds, and a tick should be many of them.
 const SHORTEST_TICK: f64 = 1e-6;
 
@@ -72,6 +75,13 @@ impl ArenaConfig {
     #[must_use]
     pub fn problems(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
+        let (width, height) = (self.size.0.get(), self.size.1.get());
+        if width.max(height) > LONGEST_SIDE {
+            let message = format!(
+                "an arena of {width:e} × {height:e} m is too large to compute distances in: use at most {LONGEST_SIDE:e} m"
+            );
+            problems.push(("size".to_owned(), message));
+        }
         for (index, obstacle) in self.obstacles.iter().enumerate() {
             let points = match obstacle {
                 ObstacleConfig::Disc { at, .. } => vec![*at],

@@ -122,7 +122,7 @@ fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
         };
         records.by_trial.insert(trial[row], record);
     }
-    let [least, most] = ["latency_min_ns", "latency_max_ns"].map(|name| table.optional_counts(name));
+    let [least, most] = ["latency_min_ns", "latency_max_ns"].map(|name| table.optional_keys(name));
     let (least, most, sum) = (least?, most?, table.optional_numbers("latency_sum_ns")?);
     for (row, trial) in trial.iter().enumerate() {
         if let (Some(least), Some(most), Some(sum)) = (least[row], most[row], sum[row]) {

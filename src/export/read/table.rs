@@ -69,8 +69,13 @@ impl Table {
 
     /// Numbers that use all of 64 bits.
     pub fn keys(&self, name: &str) -> Result<Vec<u64>, Wrong> {
-        let rows = whole(name, self.optional::<Int64Type>(name)?)?;
-        Ok(rows.into_iter().map(i64::cast_unsigned).collect())
+        whole(name, self.optional_keys(name)?)
+    }
+
+    /// Such numbers, some of them missing.
+    pub fn optional_keys(&self, name: &str) -> Result<Vec<Option<u64>>, Wrong> {
+        let rows = self.optional::<Int64Type>(name)?;
+        Ok(rows.into_iter().map(|value| value.map(i64::cast_unsigned)).collect())
     }
 
     /// Double-precision numbers.

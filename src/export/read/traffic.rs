@@ -93,7 +93,7 @@ pub fn spread(records: &mut Records, table: &Table) -> Result<(), Wrong> {
 
 pub fn latency(records: &mut Records, table: &Table) -> Result<(), Wrong> {
     let (trial, count) = (table.ids("trial")?, table.counts("count")?);
-    let (low, high) = (table.counts("low_ns")?, table.counts("high_ns")?);
+    let (low, high) = (table.keys("low_ns")?, table.keys("high_ns")?);
     for row in 0..trial.len() {
         let bucket = (low[row], high[row], count[row]);
         records.of(trial[row])?.latency.fill(bucket);

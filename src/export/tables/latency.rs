@@ -3,7 +3,7 @@
 use super::super::table::Column;
 use crate::metrics::TrialRecord;
 
-/// Delivered copies of one trial whose latency lies between two bounds.
+/// Copies of one trial, delivered or under way, whose latency lies between two bounds.
 pub struct Row {
     trial: u32,
     low_ns: u64,
@@ -26,8 +26,8 @@ type Col = Column<Row>;
 pub fn columns() -> Vec<Column<Row>> {
     vec![
         Col::id("trial", |row| row.trial),
-        Col::count("low_ns", |row| row.low_ns),
-        Col::count("high_ns", |row| row.high_ns),
+        Col::key("low_ns", |row| row.low_ns),
+        Col::key("high_ns", |row| row.high_ns),
         Col::count("count", |row| row.count),
     ]
 }

@@ -77,8 +77,8 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::count("pairs", |row| row.pairs),
         Col::f64("monitored_s", |row| row.monitored_s),
         Col::f64("mistaken_s", |row| row.mistaken_s),
-        Col::optional_count("latency_min_ns", |row| row.latency_min.map(Span::as_nanos)),
-        Col::optional_count("latency_max_ns", |row| row.latency_max.map(Span::as_nanos)),
+        Col::optional_key("latency_min_ns", |row| row.latency_min.map(Span::as_nanos)),
+        Col::optional_key("latency_max_ns", |row| row.latency_max.map(Span::as_nanos)),
         // A day of delay-tolerant traffic adds up to more nanoseconds than whole numbers of 64 bits hold.
         Col::optional_f64("latency_sum_ns", |row| {
             row.latency_min.map(|_| row.latency_sum_ns as f64)

@@ -104,6 +104,28 @@ fn means(cases: &mut Vec<Case>) {
             (difference(Estimator::Mean, [&a, &b], false).ci95, mean / 2.0)
         }));
     }
+    // Single waiting times against what does not vary: as skewed as differences come.
+    cases.push(case(
+        "difference of means, one of them fixed",
+        "exponential, skewness 2",
+        false,
+        |random, n| {
+            let a = vec![[FAR, 1.0]; n];
+            let b = plain(random, n, |random| FAR + exponential(random));
+            (difference(Estimator::Mean, [&a, &b], true).ci95, 1.0)
+        },
+    ));
+    cases.push(case(
+        "mean, of a very skewed quantity",
+        "log-normal, σ 1, skewness 6.2",
+        false,
+        |random, n| {
+            let parts = plain(random, n, |random| {
+                FAR + LogNormal::new(0.0, 1.0).unwrap().sample(random)
+            });
+            (Estimator::Mean.estimate(&parts).ci95, FAR + 0.5_f64.exp())
+        },
+    ));
     for mean in [3.0, 10.0] {
         cases.push(case(
             "mean of counts",
@@ -181,34 +203,41 @@ fn shares(cases: &mut Vec<Case>) {
             (difference(Estimator::Share, [&first, &second], false).ci95, 0.0)
         }));
     }
-    for percent in [2, 5, 10, 20, 35, 50, 65, 80, 95, 98] {
-        let share = f64::from(percent) / 100.0;
-        let shares =
-            move |random: &mut Philox, n| plain(random, n, |random| f64::from(u8::from(uniform(random) < share)));
-        cases.push(case("proportion", "yes or no, 2 to 98 %", false, move |random, n| {
-            (Estimator::Share.estimate(&shares(random, n)).ci95, share)
-        }));
-        cases.push(case(
-            "difference of proportions",
-            "yes or no, 2 to 98 %",
-            false,
-            move |random, n| {
-                let (first, second) = (shares(random, n), shares(random, n));
-                (difference(Estimator::Share, [&first, &second], false).ci95, 0.0)
-            },
-        ));
-        cases.push(case(
-            "share of things",
-            "binomial, of 50 a trial, 2 to 98 %",
-            false,
-            move |random, n| {
-                let parts: Vec<Part> = (0..n)
-                    .map(|_| [Binomial::new(50, share).unwrap().sample(random) as f64, 50.0])
-                    .collect();
-                (Estimator::ShareOf.estimate(&parts).ci95, share)
-            },
-        ));
-    }
+    let yes =
+        |random: &mut Philox, n, share: f64| plain(random, n, |random| f64::from(u8::from(uniform(random) < share)));
+    cases.push(case(
+        "proportion",
+        "yes or no, any probability",
+        false,
+        move |random, n| {
+            let share = uniform(random);
+            (Estimator::Share.estimate(&yes(random, n, share)).ci95, share)
+        },
+    ));
+    cases.push(case(
+        "difference of proportions",
+        "yes or no, any two probabilities",
+        false,
+        move |random, n| {
+            let shares = [uniform(random), uniform(random)];
+            let [first, second] = shares.map(|share| yes(random, n, share));
+            (
+                difference(Estimator::Share, [&first, &second], false).ci95,
+                shares[1] - shares[0],
+            )
+        },
+    ));
+    cases.push(case(
+        "share of things",
+        "binomial, of 50 a trial, any probability",
+        false,
+        move |random, n| {
+            let share = uniform(random);
+            let law = Binomial::new(50, share).unwrap();
+            let parts: Vec<Part> = (0..n).map(|_| [law.sample(random) as f64, 50.0]).collect();
+            (Estimator::ShareOf.estimate(&parts).ci95, share)
+        },
+    ));
 }
 
 fn rates(cases: &mut Vec<Case>) {
@@ -357,7 +386,9 @@ fn table(trials: &[usize], sets: u32) -> Vec<Row> {
 /// the average.
 fn complaints(trials: &[usize], rows: &[Row]) -> Vec<String> {
     let mut judged: Vec<(String, f64, Vec<[f64; 2]>)> = Vec::new();
-    for row in rows {
+    // These are listed so that nobody trusts them blindly: so few trials cannot tell how skewed they are.
+    let is_judged = |row: &&Row| !row.kind.contains(", one of them fixed") && !row.kind.contains(", of a very skewed");
+    for row in rows.iter().filter(is_judged) {
         let name = if row.continuous {
             format!("{}, {}", row.kind, row.data)
         } else {
@@ -397,7 +428,7 @@ fn intervals_of_every_kind_hold_the_truth_as_often_as_they_say() {
 #[ignore = "the table of docs/coverage.md: some minutes"]
 fn the_table_of_coverage() {
     let trials = [2, 3, 4, 5, 6, 7, 8, 10, 12, 15, 20, 25, 30, 35];
-    let rows = table(&trials, 4_000);
+    let rows = table(&trials, 2_000);
     let cells = |cells: Vec<String>| println!("| {} |", cells.join(" | "));
     cells(
         [

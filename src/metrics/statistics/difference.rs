@@ -1,13 +1,13 @@
 //! How much two estimates differ.
 
 use super::estimator::Estimator;
-use super::interval::skewed;
+use super::interval::wider;
 use super::permutation::Part;
 use super::terms::{Moments, Terms, of_ratio, paired};
 use super::{Ci95, Estimate};
 
 /// The second of two estimates less the first, with its interval; `n` counts pairs, or the fewer trials. Means are compared by the
-/// trials' own differences where these are `pairs`, else as Welch has it (1947). Shares and rates are compared by their own intervals
+/// trials' own differences where these are `pairs`, else as Welch has it (1947), by Student's t. Shares and rates are compared by their own intervals
 /// (Zou and Donner, 2008), which know how far each may be even where nothing was seen.
 #[must_use]
 pub fn difference(estimator: Estimator, parts: [&[Part]; 2], pairs: bool) -> Estimate {
@@ -46,7 +46,7 @@ fn of_means(estimator: Estimator, value: f64, [first, second]: [&Terms; 2], pair
         Moments::of(first).and_then(|first| Some(Moments::between(first, Moments::of(second)?)))
     };
     match moments {
-        Some(moments) if moments.variance > 0.0 => skewed(value, moments),
+        Some(moments) if moments.variance > 0.0 => wider(value, moments),
         Some(_) if matches!(estimator, Estimator::Mean | Estimator::Fraction) => [Some(value); 2],
         _ => [None; 2],
     }

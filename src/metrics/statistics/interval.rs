@@ -14,7 +14,7 @@ pub fn student(freedom: f64, tail: f64) -> Option<f64> {
 /// What an interval from so few trials leaves out on either side. Student's quantile is exact for normal values; for skewed ones, of
 /// which so few trials cannot tell the skewness, it is too small. These were found by simulation: with them uniform, normal, gamma
 /// and exponential values all lie in 93 to 97.5 % of the intervals.
-fn tail(trials: usize) -> f64 {
+pub fn tail_of_few(trials: usize) -> f64 {
     match trials {
         0..=2 => 0.0175,
         3 => 0.006,
@@ -25,10 +25,11 @@ fn tail(trials: usize) -> f64 {
     }
 }
 
-/// The interval about `value` of Student's t, corrected for skewness by Hall's cubic transformation (1992): t + γt²/3 + γ²t³/27 + γ/6,
-/// whose inverse takes the symmetric interval to one that is as skewed as the estimate. Without skewness it is Student's interval.
-pub fn skewed(value: f64, moments: Moments) -> Ci95 {
-    let Some(quantile) = student(moments.freedom, tail(moments.trials)) else {
+/// The interval about `value` of Student's t that leaves out `tail` on either side, corrected for skewness by Hall's cubic transformation
+/// (1992): t + γt²/3 + γ²t³/27 + γ/6, whose inverse takes the symmetric interval to one that is as skewed as the estimate. Without
+/// skewness it is Student's interval.
+pub fn skewed(value: f64, moments: Moments, tail: f64) -> Ci95 {
+    let Some(quantile) = student(moments.freedom, tail) else {
         return [None; 2];
     };
     let error = moments.variance.sqrt();
@@ -43,6 +44,15 @@ pub fn skewed(value: f64, moments: Moments) -> Ci95 {
         Some(value - error * shift).filter(|end| end.is_finite())
     };
     [end(quantile), end(-quantile)]
+}
+
+/// The farther end on either side of Student's interval, with or without correction for skewness. Differences are seldom skewed, and
+/// then the correction does more harm than good; but they may be.
+pub fn wider(value: f64, moments: Moments) -> Ci95 {
+    let plain = skewed(value, Moments { third: 0.0, ..moments }, TAIL);
+    let corrected = skewed(value, moments, TAIL);
+    let farther = |end: usize, of: fn(f64, f64) -> f64| Some(of(plain[end]?, corrected[end]?));
+    [farther(0, f64::min), farther(1, f64::max)]
 }
 
 /// Wilson's score interval for a `share` of `n` at the quantile `z`.
