@@ -130,6 +130,74 @@ fn the_report_of_a_study_without_a_reference_that_added_trials() {
     insta::assert_snapshot!(shown(&made_up(None, Some(stopping)), Style::PLAIN));
 }
 
+/// Four settings whose accuracies are these in each of twelve trials, described.
+fn told(accuracies: [f64; 4], reference: Option<usize>) -> Comparison {
+    let design = Design {
+        study: "made-up".into(),
+        question: None,
+        factors: vec![Factor {
+            name: "patience".into(),
+            levels: ["a", "b", "c", "d"].map(str::to_owned).to_vec(),
+        }],
+        compared: vec![0],
+        figures: vec![figure("accuracy", "query accuracy", "1", Better::Higher, false)],
+        reference,
+        relevant: 0.05,
+        pareto: None,
+    };
+    let settings = ["a", "b", "c", "d"]
+        .iter()
+        .zip(accuracies)
+        .map(|(name, accuracy)| Trials {
+            name: (*name).into(),
+            label: (*name).into(),
+            levels: vec![(*name).into()],
+            seed: 1,
+            samples: vec![
+                (0..12)
+                    .map(|trial| Sample {
+                        part: [accuracy + f64::from(trial % 3) / 100.0, 1.0],
+                        ..Sample::default()
+                    })
+                    .collect(),
+            ],
+        });
+    let mut compared = Comparison::of(&design, &settings.collect::<Vec<_>>(), None);
+    describe(&mut compared);
+    compared
+}
+
+#[test]
+fn of_equal_settings_none_is_called_the_highest_the_best_or_the_worst() {
+    for reference in [None, Some(1)] {
+        // Two of them differ by rounding.
+        let finding = told([0.1 + 0.2, 0.3, 0.3, 0.3], reference).finding;
+        assert!(
+            finding.starts_with("All 4 settings have the same query accuracy: 0.31"),
+            "{finding}"
+        );
+        for word in ["highest", "lowest", "best", "worst", "better"] {
+            assert!(!finding.contains(word), "{finding}");
+        }
+    }
+    let shared = told([0.3, 0.9, 0.9, 0.5], None).finding;
+    assert!(
+        shared.starts_with("b; c share the highest query accuracy: 0.91"),
+        "{shared}"
+    );
+    assert!(shared.contains("They are detectably better than a; d."), "{shared}");
+    let against = told([0.3, 0.9, 0.9, 0.3], Some(1)).finding;
+    assert!(
+        against.contains("No setting has a higher query accuracy than b"),
+        "{against}"
+    );
+    assert!(
+        against.contains("0 are better, 2 worse, 1 the same in every trial"),
+        "{against}"
+    );
+    assert!(against.contains("a; d are worst"), "{against}");
+}
+
 #[test]
 fn every_difference_is_said_in_words() {
     let compared = made_up(Some(0), None);

@@ -65,7 +65,9 @@ impl Taken {
                 let turn =
                     std::f64::consts::FRAC_PI_4 + f64::from(step) * std::f64::consts::TAU / f64::from(DIRECTIONS);
                 let towards = unit(turn);
-                let centre = at + towards * distance + Vec2::new(towards.x * size.x, towards.y * size.y) / 2.0;
+                // Beside or above the mark, but for the four ways straight from it.
+                let side = (towards * 1.5).map(|part| part.clamp(-1.0, 1.0));
+                let centre = at + towards * distance + side.component_mul(&size) / 2.0;
                 Rect::about(centre, size)
             });
             let mut free =

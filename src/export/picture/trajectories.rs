@@ -14,7 +14,7 @@ const RESOLUTION: f64 = 0.7;
 const WIDEST: f64 = 1.4;
 const NARROWEST: f64 = 0.7;
 /// Share of the arena that paths may cover with ink; of what is longer only the end is drawn.
-const INK: f64 = 0.3;
+const INK: f64 = 0.12;
 /// Paths fade towards their beginning, in so many steps, from and to these opacities.
 const STEPS: usize = 5;
 const OPACITY: [f64; 2] = [0.15, 0.75];

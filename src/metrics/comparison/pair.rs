@@ -132,7 +132,7 @@ impl Pair {
                 .filter(|share| share.is_finite()),
             difference,
             cliffs_delta: cliffs_delta_estimate([&values[0], &values[1]], paired),
-            p: tested.map(|tested| tested.p),
+            p: if paired { tests.permutation } else { tests.mann_whitney },
             p_adjusted: None,
             tests,
             gain,

@@ -82,10 +82,7 @@ pub(super) fn family(comparison: &Comparison) -> String {
         if family.tests == 1 { "" } else { "s" }
     );
     if family.alike > 0 {
-        words.push_str(&format!(
-            ", without {} of what is the same in every trial",
-            count(family.alike)
-        ));
+        words.push_str(&format!(", without {} of what never differs", count(family.alike)));
     }
     if family.impossible > 0 {
         words.push_str(&format!(

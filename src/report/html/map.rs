@@ -74,6 +74,8 @@ fn map(input: &PageInput, record: &TrialRecord, load: &[f64]) -> Plot {
             .range_mode(plotly::layout::RangeMode::Normal)
             .range(AxisRange::new(-half, half))
             .constrain(AxisConstrain::Domain)
+            // On a telephone more would touch each other.
+            .n_ticks(7)
     };
     let y = side("y, m", half[1]).scale_anchor("x").scale_ratio(1.0);
     let mut plot = chart(side("x, m", half[0]), y, HoverMode::Closest);
