@@ -9,7 +9,7 @@
 //! *observer's* if most were lost because the observer itself could not hear; and it is a *mistake* in every other case.
 //!
 //! - T_MR, mistake recurrence: monitored time over mistakes; λ_M, the mistake rate, is its inverse.
-//! - T_M, mistake duration: from a mistake to trust, of the mistakes that end so and not with the run or with a failure.
+//! - T_M, mistake duration: from a mistake to trust; those that end with the run, with a failure or out of range were cut off.
 //! - P_A, query accuracy: the share of the monitored time that is not spent in a mistake.
 //! - T_D, detection time: from a failure to the suspicion that is in force when the failure or the run ends, zero if that
 //!   was there before; one for each observer that monitored the robot as it failed.
