@@ -95,9 +95,12 @@ def ratio(parts, kind):
         return estimate(None, n=n)
     value = total(a for a, _ in parts) / watched
     terms = terms_of(parts, value)
+    z = norm.ppf(0.975)
+    if kind == "share" and all(b == 0 or (b == 1 and a in (0, 1)) for a, b in parts):
+        return estimate(value, *score(value, n, z), n)
     if len(terms) < 2:
         return estimate(value, n=n)
-    moments, z = Moments(terms), norm.ppf(0.975)
+    moments = Moments(terms)
     flat = all(abs(term) < 1e-15 * max(value, 1e-300) for term in terms)
     inflation = (student.ppf(0.975, n - 1) / z) ** 2
     if kind in ("mean", "fraction", "count"):

@@ -45,11 +45,11 @@ fn summary(scenario: &Scenario) -> Summary {
 #[test]
 fn mistakes_under_bursts_last_as_long_as_their_closed_form_says_though_the_end_cuts_many_off() {
     // Under simple Gilbert loss E[T_M] = (m + 1/r) η − TO: 3 + 1/0.04 − 3.5 = 24.5 s, of which what lasts longer than 120 s
-    // adds 0.96^116 · 25 = 0.2 s. Four standard errors; the interval's half width is 2.07 of them at 24 trials.
+    // adds 0.96^116 · 25 = 0.2 s. Four standard errors; the interval's half width is some 2.1 of them.
     let loss = "GilbertElliott(good_to_bad: 0.02, bad_to_good: 0.04)";
     let scenario = still(
         2,
-        24,
+        96,
         120.0,
         &format!(
             "gossip: (status: (interval: 1.0)), detector: Timeout(3.5), radio: (range: 2.0, loss: {loss}, latency: Constant(0.0))"
@@ -60,10 +60,10 @@ fn mistakes_under_bursts_last_as_long_as_their_closed_form_says_though_the_end_c
     let (Some(value), [Some(low), Some(high)]) = (found.estimate.value, found.estimate.ci95) else {
         panic!("{found:?}")
     };
-    let error = (high - low) / 2.0 / 2.07;
+    let error = (high - low) / 2.0 / 2.1;
     assert!((value - 24.4).abs() < 4.0 * error && error < 3.0, "{found:?}");
     assert!(
-        found.cut_off > 10 && found.cut_off < detection.mistakes.value / 2,
+        found.cut_off > 40 && found.cut_off < detection.mistakes.value / 2,
         "{found:?}"
     );
     let over = records(&scenario);
@@ -99,7 +99,7 @@ fn failures_that_the_end_hides_are_counted_and_said() {
 
 #[test]
 fn a_robot_sends_its_status_every_step_whatever_the_phase_of_its_clock_and_the_end() {
-    for (seconds, robots) in [(12.0, 5), (7.3, 4), (0.4, 3)] {
+    for (seconds, robots) in [(12.0, 5), (7.3, 4), (1.5, 3)] {
         let more = "gossip: (status: (interval: 1.0)), radio: (range: 2.0, loss: None, latency: Constant(0.0))";
         let scenario = still(robots, 4, seconds, more);
         let records = records(&scenario);
@@ -112,12 +112,9 @@ fn a_robot_sends_its_status_every_step_whatever_the_phase_of_its_clock_and_the_e
             .flat_map(|record| &record.traffic)
             .find(|row| row.sent.frames > 0);
         let status = status.map_or(0.0, |row| row.sent.bytes() as f64 / row.sent.frames as f64);
-        assert!(status > 0.0 || seconds < 1.0);
+        assert!(status > 0.0);
         for bytes in sent {
-            assert!(
-                (bytes - status).abs() < 1e-12 || (seconds < 1.0 && bytes <= 0.0),
-                "{bytes} B/step instead of {status}"
-            );
+            assert!((bytes - status).abs() < 1e-12, "{bytes} B/step instead of {status}");
         }
     }
 }

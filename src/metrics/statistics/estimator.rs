@@ -43,7 +43,7 @@ pub enum Estimator {
 
 impl Estimator {
     /// The ratio of the sums of `parts`, one a trial, with its interval. No value where nothing was watched; no interval from
-    /// fewer than two trials that tell something, nor where no interval would hold.
+    /// fewer than two trials that tell something, unless they are a proportion, nor where no interval would hold.
     #[must_use]
     pub fn estimate(self, parts: &[Part]) -> Estimate {
         if self == Self::Median {
@@ -60,7 +60,14 @@ impl Estimator {
                 ..Estimate::default()
             };
         };
-        let ci95 = Moments::of(&terms).map_or([None; 2], |moments| self.interval(value, moments, parts));
+        let ci95 = match Moments::of(&terms) {
+            // A proportion's interval needs no spread: one trial tells a little, too.
+            _ if self == Self::Share && n > 0 && parts.iter().all(is_yes_or_no) => {
+                wilson(value, n as f64, normal_quantile()).map(Some)
+            }
+            Some(moments) => self.interval(value, moments, parts),
+            None => [None; 2],
+        };
         Estimate {
             value: Some(value),
             ci95: ci95.map(|end| end.map(|end| end.clamp(0.0, self.most()))),
@@ -90,10 +97,15 @@ impl Estimator {
     }
 }
 
+/// Whether a trial says yes or no, or nothing.
+fn is_yes_or_no(&[a, b]: &Part) -> bool {
+    let is = |value: f64, whole: f64| (value - whole).abs() <= 0.0;
+    is(b, 0.0) || (is(b, 1.0) && (is(a, 0.0) || is(a, 1.0)))
+}
+
 /// Wilson's interval: plain where all trials are yeses and noes, else at the effective number of trials, which is not above that of the
 /// `things` whose share it is, if these are known.
 fn share(value: f64, moments: Moments, parts: &[Part], things: Option<f64>) -> Ci95 {
-    let is_yes_or_no = |part: &Part| part[1] <= 0.0 || *part == [0.0, 1.0] || *part == [1.0, 1.0];
     let ends = match things {
         _ if parts.iter().all(is_yes_or_no) => Some(wilson(value, moments.trials as f64, normal_quantile())),
         Some(things) if value <= 0.0 || value >= 1.0 => Some(wilson(value, things, normal_quantile())),
@@ -243,7 +255,8 @@ mod tests {
         assert_eq!(share(&[1.0; 35]), proportion(35, 35));
         assert_eq!(share(&[0.0; 7]), proportion(0, 7));
         assert_eq!(share(&[0.25; 7]).ci95, [None; 2]);
-        assert_eq!(share(&[1.0]).ci95, [None; 2]);
+        assert_eq!(share(&[1.0]), proportion(1, 1));
+        assert_eq!(share(&[0.5]).ci95, [None; 2]);
     }
 
     #[test]
