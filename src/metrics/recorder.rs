@@ -245,7 +245,7 @@ impl Recorder {
     ///
     /// # Panics
     /// If it believes something of a robot that it does not watch.
-    pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, inbox: Inbox<'_, M>) {
+    pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, inbox: &Inbox<'_, M>) {
         self.detection.belief(now, observer, note, inbox);
     }
 

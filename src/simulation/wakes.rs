@@ -178,7 +178,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                 read: &input.inbox,
                 waiting: self.air.waiting(robot),
             };
-            self.recorder.belief(now, robot, &note, inbox);
+            self.recorder.belief(now, robot, &note, &inbox);
             if let Note::Role(role) = note {
                 self.faults.enter(now, robot, role.0);
                 self.plan_faults();

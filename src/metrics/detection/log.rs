@@ -156,7 +156,7 @@ impl StatusLog {
 
     /// When `observer` came into range of `subject`, of which it now reads statuses for the first time: half-way between the last status that was sent while it was out of range and the first
     /// that was not. `None` if there was no such status, that is, if it has been in range from the start.
-    pub fn met<M>(&self, [observer, subject]: [ActorId; 2], inbox: Inbox<'_, M>) -> Option<SimTime> {
+    pub fn met<M>(&self, [observer, subject]: [ActorId; 2], inbox: &Inbox<'_, M>) -> Option<SimTime> {
         let Sender { sent, lost, first, .. } = &self.senders[subject.index()];
         let reached = |status: &&Sent| {
             let mut frames = inbox.read.iter().chain(inbox.waiting).map(|reception| &reception.frame);

@@ -165,7 +165,7 @@ impl Scorer {
     ///
     /// # Panics
     /// If it reports a belief about a robot that it does not watch.
-    pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, inbox: Inbox<'_, M>) {
+    pub fn belief<M>(&mut self, now: SimTime, observer: ActorId, note: &Note, inbox: &Inbox<'_, M>) {
         match *note {
             Note::Watches(subject) => {
                 let met = self.log.met([observer, subject], inbox);

@@ -61,7 +61,7 @@ impl Bench {
 
     fn believe(&mut self, seconds: f64, note: &Note, read: &[Reception<()>]) {
         let inbox = Inbox { read, waiting: &[] };
-        self.0.belief(at(seconds), OBSERVER, note, inbox);
+        self.0.belief(at(seconds), OBSERVER, note, &inbox);
     }
 
     /// The two part, or meet again.
