@@ -17,7 +17,7 @@ use tokio_util::sync::CancellationToken;
 
 /// `thousandths` of a metre as a person writes them.
 fn decimal(thousandths: i64) -> f64 {
-    format!("{}e-3", thousandths).parse().expect("a number")
+    format!("{thousandths}e-3").parse().expect("a number")
 }
 
 fn place(x: i64, y: i64) -> Vec2 {

@@ -310,7 +310,7 @@ mod tests {
         let mut counts = [0.0; 48];
         for place in places {
             let cell = |axis: usize, cells: f64| {
-                let share = (place[axis] / half[axis] + 1.0) / 2.0;
+                let share = f64::midpoint(place[axis] / half[axis], 1.0);
                 (share * cells).clamp(0.0, cells - 1.0) as usize
             };
             counts[cell(1, 6.0) * 8 + cell(0, 8.0)] += 1.0;
