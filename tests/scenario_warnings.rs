@@ -471,3 +471,45 @@ fn an_override_is_named_as_the_place_of_what_it_makes_meaningless() {
         Some("--set")
     );
 }
+
+#[test]
+fn what_looks_wrong_with_settings_of_a_study_is_said_once_with_those_that_it_is_about_and_can_be_denied() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write(
+        "base.ron",
+        "Scenario(name: \"base\", time_limit: 20.0, arena: (size: (3.0, 3.0)), swarm: (robots: 4, deploy: Uniform), protocol: Heartbeat, motion: (max_speed: 0.4))",
+    );
+    write(
+        "study.ron",
+        "Study(name: \"patience\", base: \"base.ron\", trials: 6, figure: \"detection.mistake_rate_hz\", factors: [(name: \"timeout\",
+         paths: [\"detector\"], levels: [(values: [Timeout(2.0)]), (values: [Timeout(20.0)]), (values: [Timeout(30.0)])])])",
+    );
+    let plan = desim::scenario::load_study(&folder.path().join("study.ron")).unwrap();
+    let said: Vec<String> = plan
+        .all_warnings()
+        .diagnostics
+        .into_iter()
+        .map(|found| found.message)
+        .collect();
+    let of = |start: &str| said.iter().filter(|message| message.starts_with(start)).count();
+    // What all settings share has no name of one; the others differ in what they say.
+    assert_eq!(of("`motion.max_speed` is set"), 1, "{said:?}");
+    assert_eq!(of("setting Timeout(20.0): nobody is ever suspected"), 1, "{said:?}");
+    assert_eq!(of("setting Timeout(30.0): nobody is ever suspected"), 1, "{said:?}");
+    for command in ["check", "compare"] {
+        let mut desim = assert_cmd::Command::cargo_bin("desim").unwrap();
+        let output = desim
+            .args([command, "study.ron", "--deny", "warnings"])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(
+            said.contains("warnings, and warnings are denied") && said.contains("study.ron:"),
+            "{said}"
+        );
+        assert!(!folder.path().join("results").exists());
+    }
+}

@@ -32,12 +32,12 @@ const LOST: f64 = 16.0;
 /// Of an interval that φ-accrual remembers.
 const INTERVAL: f64 = 16.0;
 /// Of a suspicion, a failed robot at an observer, a failure.
-const SUSPICION: f64 = 550.0;
+const SUSPICION: f64 = 900.0;
 const OBSERVED: f64 = 250.0;
 const FAILURE: f64 = 1500.0;
 /// Of a sample, of a position in it, of an entry of the series, and of a topic in that.
-const SAMPLE: f64 = 400.0;
-const POSITION: f64 = 50.0;
+const SAMPLE: f64 = 450.0;
+const POSITION: f64 = 100.0;
 const ENTRY: f64 = 300.0;
 const TOPIC: f64 = 250.0;
 /// Of a finished trial that waits for the others, and the share of its records that it keeps.
@@ -462,17 +462,17 @@ mod tests {
         let still = "arena: (size: (6.0, 6.0)), protocol: Heartbeat";
         let unsampled = "metrics: (sample_interval: 0.0)";
         for (sections, measured) in [
-            (format!("time_limit: 200.0, swarm: (robots: 40, deploy: Uniform), {lossy}"), 101.0),
-            (format!("trials: 20, time_limit: 100.0, swarm: (robots: 40, deploy: Uniform), {lossy}, {unsampled}"), 297.0),
-            (format!("trials: 3000, time_limit: 1.0, swarm: (robots: 40, deploy: Uniform), {still}, control: (period: 1.0), {unsampled}"), 302.0),
-            (format!("time_limit: 500.0, swarm: (robots: 2, deploy: Uniform), {still}, metrics: (sample_interval: 0.001)"), 442.0),
-            (format!("time_limit: 1000.0, swarm: (robots: 2, deploy: Uniform), {still}, metrics: (sample_interval: 0.001, series_every: 0)"), 332.0),
-            ("time_limit: 100.0, swarm: (robots: 200, deploy: Uniform), arena: (size: (20.0, 20.0)), protocol: Heartbeat, gossip: (status: (interval: 10.0)), detector: Timeout(30.0), metrics: (sample_interval: 0.01, series_every: 0)".to_owned(), 91.0),
+            (format!("time_limit: 200.0, swarm: (robots: 40, deploy: Uniform), {lossy}"), 173.0),
+            (format!("trials: 20, time_limit: 100.0, swarm: (robots: 40, deploy: Uniform), {lossy}, {unsampled}"), 405.0),
+            (format!("trials: 3000, time_limit: 1.0, swarm: (robots: 40, deploy: Uniform), {still}, control: (period: 1.0), {unsampled}"), 314.0),
+            (format!("time_limit: 500.0, swarm: (robots: 2, deploy: Uniform), {still}, metrics: (sample_interval: 0.001)"), 500.0),
+            (format!("time_limit: 1000.0, swarm: (robots: 2, deploy: Uniform), {still}, metrics: (sample_interval: 0.001, series_every: 0)"), 445.0),
+            ("time_limit: 100.0, swarm: (robots: 200, deploy: Uniform), arena: (size: (20.0, 20.0)), protocol: Heartbeat, gossip: (status: (interval: 10.0)), detector: Timeout(30.0), metrics: (sample_interval: 0.01, series_every: 0)".to_owned(), 181.0),
             (format!("time_limit: 1.0, swarm: (robots: 20000, deploy: Uniform), arena: (size: (200.0, 200.0)), protocol: Heartbeat, {unsampled}"), 110.0),
-            (format!("time_limit: 1.0, swarm: (robots: 20000, deploy: Uniform), arena: (size: (60.0, 60.0)), protocol: Heartbeat, {unsampled}"), 509.0),
-            (format!("time_limit: 100.0, swarm: (robots: 100, deploy: Uniform), {still}, radio: (latency: Constant(50.0)), {unsampled}"), 214.0),
+            (format!("time_limit: 1.0, swarm: (robots: 20000, deploy: Uniform), arena: (size: (60.0, 60.0)), protocol: Heartbeat, {unsampled}"), 444.0),
+            (format!("time_limit: 100.0, swarm: (robots: 100, deploy: Uniform), {still}, radio: (latency: Constant(50.0)), {unsampled}"), 205.0),
             (format!("time_limit: 300.0, swarm: (robots: 300, deploy: Uniform), {still}, detector: PhiAccrual(dialect: Chitchat, window: 100000), {unsampled}"), 785.0),
-            (format!("time_limit: 2000.0, swarm: (robots: 300, deploy: Uniform), arena: (size: (30.0, 30.0)), wander: RandomWaypoint(speed: 0.3), motion: (max_speed: 0.3), gossip: (status: (interval: 1.0)), protocol: Heartbeat, detector: Timeout(3.0), {unsampled}"), 189.0),
+            (format!("time_limit: 2000.0, swarm: (robots: 300, deploy: Uniform), arena: (size: (30.0, 30.0)), wander: RandomWaypoint(speed: 0.3), motion: (max_speed: 0.3), gossip: (status: (interval: 1.0)), protocol: Heartbeat, detector: Timeout(3.0), {unsampled}"), 281.0),
         ] {
             let needs = needs(&sections);
             assert!((measured..3.0 * measured).contains(&needs), "{sections}: {measured} MB measured, {needs:.0} MB estimated");
