@@ -21,7 +21,7 @@ COMMANDS = {
     "sql": ["duckdb", "-batch", "-csv", "-c"],
     "r": ["Rscript", "--vanilla", "-e"],
 }
-TOLERANCE = 1e-3
+TOLERANCE = 5e-4
 """Tables round what they print."""
 
 

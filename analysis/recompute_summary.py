@@ -482,11 +482,7 @@ class Folder:
             "load_imbalance": {
                 way: mean([gini(trial) for trial in trials], "fraction") for way, trials in (("tx", sent), ("rx", received))
             },
-            "lambda2_min": {
-                **mean(least, "count"),
-                "median": median(least),
-                "min": min((v for v in least if v is not None), default=None),
-            },
+            "lambda2_min": {**median(least), "min": min((v for v in least if v is not None), default=None)},
             "connected_share": mean(list(self.samples(lambda rows: (rows["components"] == 1).sum() / len(rows))), "share"),
             "robots_used": mean([None if n is None else float(n) for n in self.trials["robots_used"]], "count"),
             **self.failures(),

@@ -6,7 +6,7 @@ use std::path::Path;
 use assert_cmd::Command;
 use desim::engine::Span;
 use desim::metrics::comparison::{Comparison, Design, Trials};
-use desim::metrics::figures::{Better, Figure, Registry, Sample, pool};
+use desim::metrics::figures::{Figure, Registry, Sample, pool};
 use desim::metrics::{Summary, TrialRecord};
 use desim::scenario::{Override, Scenario, load, parse};
 use desim::simulation::{DriverKind, run_trial};
@@ -24,7 +24,11 @@ fn still(robots: u32, trials: u32, seconds: f64, more: &str) -> Scenario {
          swarm: (robots: {robots}, deploy: Uniform), control: (period: 1.0, wake: OnReception, phase: Random), \
          protocol: Heartbeat, {more})"
     );
-    parse(&text).expect("a valid scenario")
+    read(&text)
+}
+
+fn read(text: &str) -> Scenario {
+    parse("still.ron", text, &[]).unwrap_or_else(|report| panic!("{report}"))
 }
 
 fn records(scenario: &Scenario) -> Vec<TrialRecord> {
@@ -80,11 +84,10 @@ fn failures_that_the_end_hides_are_counted_and_said() {
     // Robot 1 falls silent at 27 s of 30: a timeout of 4.25 s cannot show it.
     let more = "gossip: (status: (interval: 1.0)), detector: Timeout(4.25), radio: (range: 2.0, loss: None, latency: Constant(0.0)), \
                 faults: [Crash(robots: [1], at: 27.0)]";
-    let scenario = parse(&format!(
+    let scenario = read(&format!(
         "Scenario(name: \"late\", trials: 3, time_limit: 30.0, arena: (size: (1.0, 1.0)), swarm: (robots: 3, deploy: Uniform), \
          control: (period: 1.0, wake: OnReception), protocol: Heartbeat, {more})"
-    ))
-    .expect("a valid scenario");
+    ));
     let detection = summary(&scenario).detection;
     let time = &detection.detection_time_s;
     assert_eq!((detection.failures.observed, detection.failures.undetected), (6, 6));
@@ -239,36 +242,4 @@ fn every_figure_that_summary_and_comparison_share_has_the_same_value_and_interva
     }
     // 24 files and more with some twenty figures each.
     assert!(shared > 400, "{shared} figures were compared");
-}
-
-#[test]
-fn every_figure_knows_which_way_is_better() {
-    let higher = [
-        "completion_ratio",
-        "lambda2_min",
-        "connected_share",
-        "delivery_ratio",
-        "detection.mistake_recurrence_s",
-        "detection.query_accuracy",
-        "healing.healed_ratio",
-        "spread.informed_ratio",
-    ];
-    let registry = Registry::of(&["status", "probe"]);
-    let mut found: Vec<&str> = registry
-        .figures()
-        .filter(|figure| figure.better == Better::Higher)
-        .map(|figure| figure.key.as_str())
-        .collect();
-    found.sort_unstable();
-    let mut higher = higher.to_vec();
-    higher.sort_unstable();
-    assert_eq!(
-        found, higher,
-        "of every other figure less is better: bytes, duplicates, latencies, steps, times of mistakes"
-    );
-    assert!(
-        registry
-            .figures()
-            .any(|figure| figure.key == "duplicates" && figure.better == Better::Lower)
-    );
 }

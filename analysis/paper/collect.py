@@ -241,7 +241,7 @@ def _fault_point(folder: Folder) -> Section:
         "steps": folder.steps(),
         "limit": folder.limit,
         "connected_share": folder.summary["connected_share"],
-        "lambda2_min": folder.summary["lambda2_min"]["median"],
+        "lambda2_min": folder.summary["lambda2_min"],
         "failures": failed,
         "failed_though_enough": None if failed is None else failed_though_enough(folder, failed),
     }

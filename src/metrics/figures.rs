@@ -207,7 +207,7 @@ impl Registry {
         self.add_plain("robots_used", "robots used", robots, |record| {
             record.robots_used().map(|robots| robots as f64)
         });
-        let lambda2 = (DIMENSIONLESS, Better::Higher, Estimator::Count);
+        let lambda2 = (DIMENSIONLESS, Better::Higher, Estimator::Median);
         self.add_plain("lambda2_min", "least λ₂", lambda2, TrialRecord::lambda2_min);
         self.add_plain(
             "connected_share",
@@ -373,3 +373,40 @@ type Bytes = fn(&TrafficRow) -> u64;
 
 /// Unit, which way is better, and how it is estimated.
 type Kind = (&'static str, Better, Estimator);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_figure_knows_which_way_is_better() {
+        let higher = [
+            "completion_ratio",
+            "lambda2_min",
+            "connected_share",
+            "delivery_ratio",
+            "detection.mistake_recurrence_s",
+            "detection.query_accuracy",
+            "healing.healed_ratio",
+            "spread.informed_ratio",
+        ];
+        let registry = Registry::of(&["status", "probe"]);
+        let mut found: Vec<&str> = registry
+            .figures()
+            .filter(|figure| figure.better == Better::Higher)
+            .map(|figure| figure.key.as_str())
+            .collect();
+        found.sort_unstable();
+        let mut higher = higher.to_vec();
+        higher.sort_unstable();
+        assert_eq!(
+            found, higher,
+            "of every other figure less is better: bytes, duplicates, latencies, steps, times of mistakes"
+        );
+        assert!(
+            registry
+                .figures()
+                .any(|figure| figure.key == "duplicates" && figure.better == Better::Lower)
+        );
+    }
+}

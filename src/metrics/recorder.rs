@@ -386,6 +386,7 @@ fn robots(reports: Reports, poses: Vec<Pose>, steps: &[u64]) -> Vec<RobotState> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::faults::{Effect, Health};
     use crate::protocol::Role;
 
     const RANGE: f64 = 2.0;
@@ -491,6 +492,33 @@ mod tests {
             [1.0_f32, 0.0].map(f32::to_bits)
         );
         assert_eq!(record.robots[1].role, 1);
+    }
+
+    #[test]
+    fn a_robot_that_has_failed_is_no_part_of_the_graph() {
+        // A path of three whose middle fails leaves two that are out of each other's range; whose end fails, a pair: λ₂ = 2.
+        for (failed, lambda2, components) in [(1, 0.0, 2), (2, 2.0, 1)] {
+            let mut recorder = recorder(None);
+            let health = Health {
+                sends: false,
+                ..Health::WELL
+            };
+            let change = Change {
+                fault: 0,
+                begins: true,
+                subject: Subject::Robot {
+                    robot: ActorId(failed),
+                    effect: Effect::Mute,
+                    health,
+                },
+            };
+            recorder.fault(SimTime::from_secs(1.0), &change, &line(1.5));
+            recorder.sample(SimTime::from_secs(2.0), &line(1.5));
+            let record = recorder.finish(end());
+            let sample = &record.connectivity[0];
+            assert_eq!((sample.components, failed), (components, failed));
+            assert!((sample.lambda2 - lambda2).abs() < 1e-9, "{}", sample.lambda2);
+        }
     }
 
     #[test]

@@ -257,7 +257,7 @@ fn connectivity(page: &mut Page, summary: &Summary) {
     }
     let least = format!(
         "{} median of trials, {} at worst",
-        estimate(&lambda2.median, figure),
+        estimate(&lambda2.estimate, figure),
         maybe(lambda2.min)
     );
     page.entry("least λ₂", &least);

@@ -271,6 +271,11 @@ fn medians(cases: &mut Vec<Case>) {
             let values: Vec<f64> = (0..n).map(|_| law(random)).collect();
             (median(&values).ci95, truth)
         }));
+        cases.push(case("difference of medians", data, false, move |random, n| {
+            let of = |random: &mut Philox, shift: f64| plain(random, n, |random| FAR + law(random) + shift);
+            let (a, b) = (of(random, 0.0), of(random, 1.0));
+            (difference(Estimator::Median, [&a, &b], false).ci95, 1.0)
+        }));
     }
     for (data, end) in [
         ("exponential, none cut off", f64::INFINITY),

@@ -7,7 +7,7 @@ use super::terms::{Moments, Terms, of_ratio, paired};
 use super::{Ci95, Estimate};
 
 /// The second of two estimates less the first, with its interval; `n` counts pairs, or the fewer trials. Means are compared by the
-/// trials' own differences where these are `pairs`, else as Welch has it (1947), by Student's t. Shares and rates are compared by their own intervals
+/// trials' own differences where these are `pairs`, else as Welch has it (1947), by Student's t. Shares, rates and medians are compared by their own intervals
 /// (Zou and Donner, 2008), which know how far each may be even where nothing was seen.
 #[must_use]
 pub fn difference(estimator: Estimator, parts: [&[Part]; 2], pairs: bool) -> Estimate {
@@ -27,6 +27,7 @@ pub fn difference(estimator: Estimator, parts: [&[Part]; 2], pairs: bool) -> Est
         Estimator::Mean | Estimator::Fraction | Estimator::Count | Estimator::Times => {
             of_means(estimator, b - a, [&first, &second], pairs)
         }
+        Estimator::Median => of_intervals(estimates, 0.0),
         Estimator::Share | Estimator::ShareOf | Estimator::Rate | Estimator::Recurrence => {
             let correlation = if pairs { correlation(&first, &second) } else { 0.0 };
             of_intervals(estimates, correlation)

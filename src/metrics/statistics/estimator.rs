@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::interval::{inflation, poisson, share_at, skewed, tail_of_few, wilson};
+use super::median::median;
 use super::permutation::Part;
 use super::terms::{Moments, of_ratio};
 use super::{Ci95, Estimate, normal_quantile};
@@ -11,8 +12,8 @@ use super::{Ci95, Estimate, normal_quantile};
 /// spread is known less well than by as many whole times; found by simulation.
 const TAIL_OF_TIMES: f64 = 0.018;
 
-/// What kind of number a figure is: that decides how its interval is made. All are ratios of sums over trials; of a plain mean each
-/// trial adds its value over 1. None is negative.
+/// What kind of number a figure is: that decides how its interval is made. All but medians are ratios of sums over trials; of a plain mean
+/// each trial adds its value over 1. None is negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Estimator {
@@ -26,6 +27,8 @@ pub enum Estimator {
     /// The mean of times of which some may have been cut off: the mean of their [pseudo-values](super::pseudo_values), as
     /// [`Count`](Self::Count).
     Times,
+    /// The median, between [order statistics](super::median).
+    Median,
     /// A share of what trials are independent of each other in: Wilson's interval at the effective number of trials (Korn and
     /// Graubard, 1998).
     Share,
@@ -43,6 +46,10 @@ impl Estimator {
     /// fewer than two trials that tell something, nor where no interval would hold.
     #[must_use]
     pub fn estimate(self, parts: &[Part]) -> Estimate {
+        if self == Self::Median {
+            let values = parts.iter().filter(|part| part[1] > 0.0).map(|[a, b]| a / b);
+            return median(&values.collect::<Vec<_>>());
+        }
         if self == Self::Recurrence {
             return inverse(Self::Rate.estimate(&parts.iter().map(|&[a, b]| [b, a]).collect::<Vec<_>>()));
         }
@@ -65,7 +72,7 @@ impl Estimator {
     fn most(self) -> f64 {
         match self {
             Self::Fraction | Self::Share | Self::ShareOf => 1.0,
-            Self::Mean | Self::Count | Self::Times | Self::Rate | Self::Recurrence => f64::INFINITY,
+            Self::Mean | Self::Count | Self::Times | Self::Median | Self::Rate | Self::Recurrence => f64::INFINITY,
         }
     }
 
@@ -78,6 +85,7 @@ impl Estimator {
             Self::Share => share(value, moments, parts, None),
             Self::ShareOf => share(value, moments, parts, Some(parts.iter().map(|part| part[1]).sum())),
             Self::Rate | Self::Recurrence => rate(value, moments, parts),
+            Self::Median => [None; 2],
         }
     }
 }

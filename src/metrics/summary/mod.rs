@@ -24,7 +24,7 @@ use crate::engine::Span;
 use super::figures::Registry;
 use super::latency::LatencyHistogram;
 use super::record::{Outcome, TrialRecord};
-use super::statistics::{Estimate, Estimator, Observation, median, median_survival};
+use super::statistics::{Estimate, Estimator, Observation, median_survival};
 pub(super) use quantity::DIMENSIONLESS;
 
 pub(super) const STEPS: &str = "control steps";
@@ -109,11 +109,9 @@ pub struct Latency {
 /// The least λ₂ of each trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeastConnectivity {
-    /// Mean over trials.
+    /// Median over trials.
     #[serde(flatten)]
     pub estimate: Estimate,
-    /// Median over trials.
-    pub median: Estimate,
     /// Least over trials.
     pub min: Option<f64>,
     /// Always `"1"`.
@@ -251,7 +249,6 @@ impl LeastConnectivity {
         let minima: Vec<f64> = figures.records.iter().filter_map(TrialRecord::lambda2_min).collect();
         Self {
             estimate: figures.estimate("lambda2_min"),
-            median: median(&minima),
             min: minima.iter().copied().min_by(f64::total_cmp),
             unit: DIMENSIONLESS.into(),
         }

@@ -2,10 +2,11 @@ use serde_json::Value;
 
 use super::*;
 use crate::engine::{ActorId, SimTime};
+use crate::faults::Effect;
 use crate::geometry::{Pose, Vec2};
 use crate::metrics::detection::{Cause, DetectionRecord, Missed, Suspicion};
-use crate::metrics::record::TopicFates;
-use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RunEnd};
+use crate::metrics::record::{FaultEpisode, FaultKind, TopicFates};
+use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RumorSpread, RunEnd};
 use crate::protocol::{MessageSize, Note, Role, Topic};
 use crate::radio::LossCause;
 
@@ -155,7 +156,7 @@ fn outcomes_delivery_and_connectivity_are_estimates_over_trials() {
     assert_eq!(summary.lambda2_min.min, Some(0.0));
     assert!(
         (summary.lambda2_min.estimate.value.unwrap() - 1.0).abs() < 1e-9,
-        "mean of 2 and 0"
+        "median of 2 and 0"
     );
     assert_eq!(summary.robots_used.estimate.value, Some(1.0));
     assert_eq!((summary.steps.value, summary.simulated_s.value), (20, 2.0));
@@ -214,10 +215,7 @@ fn keys_are_stable_and_in_a_stable_order() {
         ["value", "ci95", "n", "cut_off", "restricted_to", "unit"]
     );
     assert_eq!(keys(&json["latency_s"]), ["p50", "p95", "p99", "mean", "unit"]);
-    assert_eq!(
-        keys(&json["lambda2_min"]),
-        ["value", "ci95", "n", "median", "min", "unit"]
-    );
+    assert_eq!(keys(&json["lambda2_min"]), ["value", "ci95", "n", "min", "unit"]);
     let directions = [
         "tx_bytes_per_step",
         "rx_bytes_per_step",
@@ -363,4 +361,53 @@ fn detection_figures_are_ratios_of_sums_over_trials() {
     assert_eq!(lasted(&detection.detection_time_s), None, "nobody failed");
     let [low, high] = detection.query_accuracy.estimate.ci95;
     assert!(low < Some(0.975) && high > Some(0.975) && detection.query_accuracy.estimate.n == 2);
+}
+
+#[test]
+fn who_is_down_at_the_end_is_no_robot_that_a_rumour_should_have_reached() {
+    let mut record = trial(0, 8);
+    let at = |seconds: f64| Some(SimTime::from_secs(seconds));
+    record.spread = vec![RumorSpread {
+        informed: vec![at(0.25), None],
+    }];
+    let fault = |until| FaultEpisode {
+        fault: 0,
+        kind: FaultKind::Robot {
+            robot: ActorId(1),
+            effect: Effect::Crash,
+            role: 0,
+            target: None,
+        },
+        from: SimTime::from_secs(0.1),
+        until,
+    };
+    let spread = |faults: Vec<FaultEpisode>| {
+        let mut record = record.clone();
+        record.faults = faults;
+        let summary = Summary::of("duet", &TOPICS, &ROLES, &[record]);
+        let spread = summary.spread.expect("there is a rumour");
+        (spread.informed_ratio.estimate.value, spread.time_to_all.median.value)
+    };
+    assert_eq!(spread(vec![fault(None)]), (Some(1.0), Some(0.25)));
+    assert_eq!(
+        spread(vec![fault(at(0.5))]),
+        (Some(0.5), None),
+        "who is well again counts"
+    );
+    assert_eq!(spread(Vec::new()), (Some(0.5), None));
+}
+
+#[test]
+fn a_robot_is_measured_by_its_own_control_steps() {
+    let mut record = trial(0, 8);
+    record.robots[0].steps = 9;
+    let tx = Summary::of("duet", &TOPICS, &ROLES, &[record])
+        .bandwidth
+        .total
+        .tx_bytes_per_step;
+    assert_eq!(
+        (tx.min, tx.max),
+        (Some(2.0), Some(10.0)),
+        "90 B in nine steps, 20 B in ten"
+    );
 }

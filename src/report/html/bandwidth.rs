@@ -184,7 +184,8 @@ pub fn headers(input: &PageInput) -> Figure {
     let robot_steps: f64 = input
         .records
         .iter()
-        .map(|record| (record.steps.max(1) * record.robots.len() as u64) as f64)
+        .flat_map(|record| &record.robots)
+        .map(|robot| robot.steps.max(1) as f64)
         .sum();
     let mut bars = Vec::new();
     for topic in 0..input.topics.len() {

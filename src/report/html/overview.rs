@@ -41,7 +41,7 @@ pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
     if summary.lambda2_min.min.is_some() {
         rows.push((
             "least λ₂, median of trials",
-            estimate(&summary.lambda2_min.median, figure),
+            estimate(&summary.lambda2_min.estimate, figure),
         ));
         rows.push((
             "in one piece, share of the time",
