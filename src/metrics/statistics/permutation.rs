@@ -52,7 +52,7 @@ pub fn paired_permutation(strata: &[[&[Part]; 2]], tests: usize) -> Option<Teste
         .iter()
         .map(|[a, _]| total_of(equal.iter().map(|&trial| a[trial])))
         .collect();
-    let difference = |swapped: &dyn Fn(usize) -> bool| {
+    let difference = |swapped: &Way| {
         let mut place = 0;
         mean_difference(strata, |[a, b]| {
             let mut sums = [start[place]; 2];
@@ -71,7 +71,7 @@ pub fn paired_permutation(strata: &[[&[Part]; 2]], tests: usize) -> Option<Teste
     if !observed.is_finite() {
         return None;
     }
-    let is_as_large = |swapped: &dyn Fn(usize) -> bool| {
+    let is_as_large = |swapped: &Way| {
         let difference = difference(swapped);
         // Rounding must not make the same difference a smaller one; a difference without bounds counts as large.
         difference.is_nan() || difference.abs() >= observed.abs() * (1.0 - 1e-9)
@@ -91,7 +91,7 @@ pub fn sign_permutation(vectors: &[Vec<f64>], tests: usize) -> Option<Tested> {
         .iter()
         .filter(|vector| vector.iter().any(|value| *value != 0.0))
         .collect();
-    let length = |flipped: &dyn Fn(usize) -> bool| -> f64 {
+    let length = |flipped: &Way| -> f64 {
         let parts = moving.first().map_or(0, |vector| vector.len());
         let sum = |part: usize| -> f64 {
             let signed = moving.iter().enumerate();
@@ -102,12 +102,15 @@ pub fn sign_permutation(vectors: &[Vec<f64>], tests: usize) -> Option<Tested> {
         (0..parts).map(|part| sum(part).powi(2)).sum()
     };
     let observed = length(&|_| false);
-    let is_as_large = |flipped: &dyn Fn(usize) -> bool| length(flipped) >= observed * (1.0 - 1e-9);
+    let is_as_large = |flipped: &Way| length(flipped) >= observed * (1.0 - 1e-9);
     Some(over_ways(moving.len(), tests, &is_as_large))
 }
 
+/// A way to swap pairs: whether each of them is.
+type Way<'a> = dyn Fn(usize) -> bool + 'a;
+
 /// The share of the ways to swap `pairs` pairs that are as large as what was observed.
-fn over_ways(pairs: usize, tests: usize, is_as_large: &dyn Fn(&dyn Fn(usize) -> bool) -> bool) -> Tested {
+fn over_ways(pairs: usize, tests: usize, is_as_large: &dyn Fn(&Way) -> bool) -> Tested {
     if pairs <= EXACT_PAIRS {
         let ways = 1_u32 << pairs;
         let large = (0..ways)

@@ -124,39 +124,40 @@ pub fn finding(comparison: &Comparison, figure: &Figure) -> String {
             probability(effect.p_adjusted)
         )
     };
-    let mut words = String::new();
+    let mut words: Vec<String> = Vec::new();
     match &largest[..] {
-        [] if comparison.effects_in(&figure.key).next().is_none() => return words,
-        [] => words.push_str(" Averaged over the others, no factor shows a detectable effect."),
-        [first, second, ..] if apart(size(first), size(second)) == 0.0 => {
-            words.push_str(&format!(
-                " Averaged over the others, {} and {} matter alike: ",
-                first.factor, second.factor
-            ));
-        }
-        [first, ..] => words.push_str(&format!(" Averaged over the others, {} matters most: ", first.factor)),
+        [] if comparison.effects_in(&figure.key).next().is_none() => return String::new(),
+        [] => words.push(" Averaged over the others, no factor shows a detectable effect.".to_owned()),
+        [first, second, ..] if apart(size(first), size(second)) == 0.0 => words.push(format!(
+            " Averaged over the others, {} and {} matter alike: ",
+            first.factor, second.factor
+        )),
+        [first, ..] => words.push(format!(" Averaged over the others, {} matters most: ", first.factor)),
     }
-    let mut steps = largest.iter().enumerate().map(|(place, effect)| match place {
-        0 => step(effect),
-        _ => format!("of {}, {}", effect.factor, step(effect)),
-    });
-    if let Some(first) = steps.next() {
-        words.push_str(&steps.fold(first, |words, step| format!("{words}; {step}")));
-        words.push('.');
+    let steps: Vec<String> = largest
+        .iter()
+        .enumerate()
+        .map(|(place, effect)| match place {
+            0 => step(effect),
+            _ => format!("of {}, {}", effect.factor, step(effect)),
+        })
+        .collect();
+    if !steps.is_empty() {
+        words.push(format!("{}.", steps.join("; ")));
     }
     for interaction in comparison.interactions_in(&figure.key) {
         match interaction.verdict {
-            Dependence::Depends => words.push_str(&format!(" Mind that {}.", depends(interaction, figure))),
+            Dependence::Depends => words.push(format!(" Mind that {}.", depends(interaction, figure))),
             Dependence::NoDetectableDependence if interaction.p_adjusted.is_some() => {
                 let [first, second] = &interaction.factors;
-                words.push_str(&format!(
+                words.push(format!(
                     " The effect of {first} does not detectably depend on {second}."
                 ));
             }
             _ => {}
         }
     }
-    words
+    words.concat()
 }
 
 /// What levels of single factors do to a figure, and whether that depends on other factors.

@@ -76,19 +76,19 @@ pub(super) fn compared(comparison: &Comparison) -> String {
 /// Over what p-values are adjusted.
 pub(super) fn family(comparison: &Comparison) -> String {
     let family = &comparison.family;
-    let mut words = format!(
+    let mut words = vec![format!(
         "p adjusted by Holm over {} test{}",
         count(family.tests),
         if family.tests == 1 { "" } else { "s" }
-    );
+    )];
     if family.alike > 0 {
-        words.push_str(&format!(", without {} of what never differs", count(family.alike)));
+        words.push(format!("without {} of what never differs", count(family.alike)));
     }
     if family.impossible > 0 {
-        words.push_str(&format!(
-            ", without {} that so few trials cannot decide",
+        words.push(format!(
+            "without {} that so few trials cannot decide",
             count(family.impossible)
         ));
     }
-    words
+    words.join(", ")
 }

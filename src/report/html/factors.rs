@@ -133,7 +133,7 @@ fn by_levels(comparison: &Comparison, figure: &figures::Figure, interaction: &In
             matrix::levels(
                 &matrix::Levels {
                     factors: names,
-                    levels,
+                    labels: levels,
                     values: &values,
                 },
                 &format!("{} downwards, darker is better", names[1]),

@@ -107,15 +107,15 @@ fn turned(verdict: Verdict) -> Verdict {
 pub struct Levels<'a> {
     /// Names of both factors, the one across first.
     pub factors: [&'a str; 2],
-    /// Labels of the levels of both.
-    pub levels: [&'a [String]; 2],
+    /// Labels of both factors' levels.
+    pub labels: [&'a [String]; 2],
     /// The value in each, row by row, where there is one.
     pub values: &'a [Vec<Option<f64>>],
 }
 
 /// A figure's value by the levels of two factors, from pale to dark the better way.
 pub fn levels(table: &Levels, title: &str, better: Better, write: impl Fn(f64) -> String) -> Panel {
-    let [across, down] = table.levels.map(|levels| Names::of(levels.iter().map(String::as_str)));
+    let [across, down] = table.labels.map(|levels| Names::of(levels.iter().map(String::as_str)));
     let value = |value: &Option<f64>| value.map(shown);
     let z: Vec<Vec<Option<f64>>> = table.values.iter().map(|row| row.iter().map(value).collect()).collect();
     let text: Vec<Vec<String>> = table
@@ -124,9 +124,14 @@ pub fn levels(table: &Levels, title: &str, better: Better, write: impl Fn(f64) -
         .enumerate()
         .map(|(row, values)| {
             let of = |(column, value): (usize, &Option<f64>)| {
-                let [x, y] = [&table.levels[0][column], &table.levels[1][row]].map(|level| escaped(level));
-                let [a, b] = table.factors.map(escaped);
-                format!("{a} {x}, {b} {y}: {}", value.map_or("no value".to_owned(), &write))
+                format!(
+                    "{} {}, {} {}: {}",
+                    escaped(table.factors[0]),
+                    escaped(&table.labels[0][column]),
+                    escaped(table.factors[1]),
+                    escaped(&table.labels[1][row]),
+                    value.map_or("no value".to_owned(), &write)
+                )
             };
             values.iter().enumerate().map(of).collect()
         })
@@ -148,13 +153,13 @@ pub fn levels(table: &Levels, title: &str, better: Better, write: impl Fn(f64) -
         .hover_info(HoverInfo::Text);
     let mut plot = chart(across.across(table.factors[0]), down.down(), HoverMode::Closest);
     plot.add_trace(map);
-    if table.levels[0].len() <= MOST_NUMBERS {
+    if table.labels[0].len() <= MOST_NUMBERS {
         numbers(&mut plot, table, [&across, &down], write);
     }
     Panel::of_height(
         title.to_owned(),
         plot,
-        AROUND + row_height(table.levels[1].len()) * table.levels[1].len() as u32,
+        AROUND + row_height(table.labels[1].len()) * table.labels[1].len() as u32,
     )
 }
 

@@ -75,15 +75,15 @@ impl Names {
 
     /// An axis from left to right, the first name on the left.
     pub fn across(&self, title: &str) -> Axis {
-        self.axis(title, self.0.clone())
+        Self::axis(title, self.0.clone())
     }
 
     /// An axis upwards, the first name at the top.
     pub fn down(&self) -> Axis {
-        self.axis("", self.0.iter().rev().cloned().collect())
+        Self::axis("", self.0.iter().rev().cloned().collect())
     }
 
-    fn axis(&self, title: &str, order: Vec<String>) -> Axis {
+    fn axis(title: &str, order: Vec<String>) -> Axis {
         // Left to itself, plotly takes names that look like numbers or dates for these, and leaves out labels where they are many, and places
         // at the ends where there is nothing to draw.
         bare(title)
