@@ -4,6 +4,7 @@ use std::num::NonZeroU32;
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::Health;
+use crate::geometry::at_most;
 use crate::motion::World;
 use crate::protocol::{Evidence, Note};
 use crate::radio::LossCause;
@@ -85,7 +86,7 @@ impl Scorer {
         Self {
             log: StatusLog::new(robots, watching.memory),
             patience: watching.patience,
-            ranges: Ranges::new(watching.range),
+            ranges: Ranges::new(at_most(watching.range)),
             health: vec![Health::WELL; robots],
             changed: vec![SimTime::ZERO; robots],
             silences: vec![Vec::new(); robots],
