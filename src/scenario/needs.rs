@@ -332,6 +332,7 @@ impl<'a> View<'a> {
         let in_range = self.robots * self.neighbours * self.time_limit;
         let scenario = self.scenario;
         let often = match &scenario.detector {
+            DetectorConfig::None => return 0.0,
             DetectorConfig::Swim(swim) => {
                 let range = scenario.radio.range.get();
                 let failing = swim.probe_failure(scenario.radio.loss.mean_loss(range, range));
