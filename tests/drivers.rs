@@ -138,8 +138,12 @@ fn a_round_ends_where_the_first_frame_of_it_may_arrive() {
 /// Neither a motion tick nor anything else happens when this run ends, in the middle of a round.
 #[test]
 fn a_round_ends_with_the_run() {
-    assert_same_with_and_without_rounds("loss20.ron", &["time_limit=11.0437"]);
-    assert_same_at_the_very_lookahead(&["time_limit=11.0437"]);
+    for end in ["11.0137", "11.0341", "11.0437", "11.0719"] {
+        let limit = format!("time_limit={end}");
+        assert_same_with_and_without_rounds("loss20.ron", &[&limit]);
+        assert_same_with_and_without_rounds("loss20.ron", &[&limit, "protocol=Heartbeat"]);
+        assert_same_at_the_very_lookahead(&[&limit]);
+    }
 }
 
 #[test]
