@@ -156,6 +156,9 @@ fn ratios_of_sums_have_effects_too_and_a_setting_without_a_value_has_none() {
     let compared = Comparison::of(&design, &trials, None);
     // Four times the events over the same time: 3 · Σ(1 + t mod 3)/Σ(50 + 10 (t mod 2)) = 3 · 24/660.
     near(compared.effects[0].difference.value, 72.0 / 660.0);
+    // d = R₁ − R₀ + ((a₁ − R₁ b) − (a₀ − R₀ b))/55 of each trial, not skewed; stats.ttest_1samp(d, 0).confidence_interval().
+    near(compared.effects[0].difference.ci95[0], 0.078_811_815);
+    near(compared.effects[0].difference.ci95[1], 0.139_370_004);
     assert_eq!(
         (compared.effects[0].verdict, compared.effects[0].p),
         (Verdict::Worse, Some(2.0 / 4096.0))
