@@ -131,8 +131,8 @@ fn what_is_averaged_over_a_third_factor_is_the_mean_over_its_levels() {
     near(of("b", "1", "0"), 2.0);
     near(of("c", "2", "1"), 8.0);
     let verdicts: Vec<Dependence> = compared.interactions.iter().map(|it| it.verdict).collect();
-    use Dependence::{Depends, NoDetectableDependence};
-    assert_eq!(verdicts, [NoDetectableDependence, NoDetectableDependence, Depends]);
+    let [none, depends] = [Dependence::NoDetectableDependence, Dependence::Depends];
+    assert_eq!(verdicts, [none, none, depends]);
     assert_eq!(
         compared.interactions[0].p_adjusted, None,
         "a and b add up in every trial"
