@@ -228,7 +228,7 @@ fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_
         ),
         (vec!["trials=1000000"], "trials", "for the other trials"),
         (
-            vec!["radio.latency=Constant(1000)", "time_limit=5000", "detector=Timeout(9)"],
+            vec!["radio.latency=Constant(4900)", "time_limit=5000", "detector=Timeout(9)"],
             "radio.latency",
             "under way",
         ),
@@ -278,8 +278,18 @@ fn more_events_than_weeks_hold_are_refused_and_those_of_days_are_warned_of() {
         "swarm.robots=1000",
         "swarm.deploy=Uniform",
     ];
-    let rounds =
-        |interval: &'static str| [&rumour[..], &[interval, "radio.latency=Constant(0)", "radio.range=3"]].concat();
+    let rounds = |interval: &'static str| {
+        [
+            &rumour[..],
+            &[
+                interval,
+                "radio.latency=Constant(0)",
+                "radio.range=3",
+                "control.wake=OnReception",
+            ],
+        ]
+        .concat()
+    };
     let report = read(BASE, &rounds("gossip.relay.interval=1e-6")).expect_err("that takes months");
     assert!(
         report.to_string().contains("events, which would take weeks"),
