@@ -205,12 +205,12 @@ mod tests {
     #[test]
     fn words_are_broken_before_a_table_is_and_figures_never() {
         insta::assert_snapshot!(shown(&grid(), 54), @r"
-                                         sent  received  lost
-                                        least      by a
-                                                  robot
-        ─────────────────────────────────────────────────────
-          parent strand  1,234 [1,200, 1,300]         7     –
-          漢字                              2   345,678  12 %
+                                         sent   received  lost
+                                        least       by a
+                                                   robot
+        ──────────────────────────────────────────────────────
+          parent strand  1,234 [1,200, 1,300]          7     –
+          漢字                              2    345,678  12 %
         ");
     }
 
@@ -223,11 +223,11 @@ mod tests {
           parent strand  1,234 [1,200, 1,300]
           漢字                              2
 
-                         received by a  lost
-                                 robot
-        ────────────────────────────────────
-          parent strand              7     –
-          漢字                 345,678  12 %
+                          received by a  lost
+                                  robot
+        ─────────────────────────────────────
+          parent strand               7     –
+          漢字                  345,678  12 %
         ");
     }
 

@@ -121,14 +121,11 @@ fn a_fault_is_underlined_where_it_stands_though_signs_are_longer() {
     fs::write(dir.path().join("signs.ron"), text).unwrap();
     let output = run(dir.path(), &["check", "signs.ron"]);
     let said = String::from_utf8(output.stdout).unwrap();
-    let lines: Vec<&str> = said.lines().collect();
-    let shown = lines
-        .iter()
-        .position(|line| line.contains("a␛␛␛b") && line.contains("nonsense"))
-        .expect(&said);
-    let place = lines[shown].find("nonsense").unwrap();
-    let column = lines[shown][..place].chars().count();
-    let underlined = lines[shown + 1].chars().position(|letter| "─┬".contains(letter));
+    let (_, unknown) = said.split_once("unknown field `nonsense`").expect(&said);
+    let mut lines = unknown.lines().skip_while(|line| !line.contains("a␛␛␛b"));
+    let (shown, under) = (lines.next().expect(&said), lines.next().expect(&said));
+    let column = shown[..shown.find("nonsense").expect(&said)].chars().count();
+    let underlined = under.chars().position(|letter| "─┬".contains(letter));
     assert_eq!(underlined, Some(column), "{said}");
     assert!(!said.contains('\u{1b}'), "{said}");
 }
