@@ -233,7 +233,14 @@ fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_
             "under way",
         ),
         (
-            vec!["swarm.robots=500000", "swarm.deploy=Uniform", "arena.size=(300, 300)"],
+            vec![
+                "detector=Timeout(16)",
+                "radio.loss=None",
+                "gossip.status.interval=5",
+                "swarm.robots=500000",
+                "swarm.deploy=Uniform",
+                "arena.size=(300, 300)",
+            ],
             "swarm.robots",
             "whom they hear",
         ),
