@@ -49,7 +49,7 @@ fn every_broken_or_extreme_file_is_checked_and_predicted_within_a_second_and_wit
         }
         let before = spent();
         let output = command.timeout(PATIENCE).output().expect("the command starts and ends");
-        let time = spent() - before;
+        let time = spent().saturating_sub(before);
         let said = [output.stdout, output.stderr].concat();
         let said = String::from_utf8_lossy(&said);
         let status = output.status.code();
