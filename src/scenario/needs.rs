@@ -16,7 +16,8 @@ use crate::motion::DeployConfig;
 use crate::protocol::control::WakeConfig;
 use crate::protocol::detector::DetectorConfig;
 use crate::protocol::gossip::FanOutConfig;
-use crate::quantity::Finite;
+use crate::quantity::{Finite, Probability};
+use crate::radio::{LossChain, LossConfig};
 
 /// Bytes of the program itself.
 const PROGRAM: f64 = 30e6;
@@ -360,23 +361,34 @@ impl<'a> View<'a> {
         once + often
     }
 
-    /// Suspicions a second between two robots in range: an arrival, and then so many losses that the next one comes after
-    /// `silence`, or later by what latency varies.
+    /// Suspicions a second between two robots in range: an arrival, and then no other for `silence`. Of the statuses that are sent
+    /// early enough to arrive within it, were they no later than some latency, each is lost or later than that; the latency that
+    /// bounds this best is taken.
     fn mistakes(&self, interval: f64, silence: f64) -> f64 {
         let radio = &self.scenario.radio;
         let latencies = radio.latency.quantiles(200);
-        let spread = latencies[latencies.len() - 1] - latencies[0];
-        let losses = ((silence - spread) / interval - 1e-9).floor().max(0.0);
+        let number = latencies.len();
         let range = radio.range.get();
         // Where loss grows with distance, neither the nearest nor the farthest err most.
         let distances = [0.25, 0.5, 0.75, 0.9, 1.0].map(|share| share * range);
         let rates = distances.map(|distance| {
-            let chain = radio.loss.chain(distance, range);
-            let Some(mut run) = chain.after_arrival() else {
-                return 0.0;
-            };
-            run.lose_all(losses as u64);
-            chain.arriving() * run.probability() / interval
+            let bounds = [0.5, 0.75, 0.9, 0.975, 1.0].map(|share| {
+                let place = ((share * number as f64) as usize).clamp(1, number) - 1;
+                let spread = latencies[place] - latencies[0];
+                let later = if number == 1 {
+                    0.0
+                } else {
+                    1.0 - (place as f64 + 0.5) / number as f64
+                };
+                let losses = ((silence - spread) / interval - 1e-9).floor().max(0.0);
+                let Some(mut run) = thinned(&radio.loss, distance, range, later).after_arrival() else {
+                    return 0.0;
+                };
+                run.lose_all(losses as u64);
+                run.probability()
+            });
+            let silent = bounds.into_iter().fold(1.0, f64::min);
+            radio.loss.chain(distance, range).arriving() * silent / interval
         });
         rates.into_iter().fold(0.0, f64::max)
     }
@@ -411,6 +423,28 @@ impl<'a> View<'a> {
         let sampled = self.samples * (1.0 + self.neighbours);
         ticks * moved + self.robots * (steps + sent * (1.0 + self.neighbours) + sampled)
     }
+}
+
+/// The losses between robots at `distance` metres where a share `later` of what arrives counts as lost too.
+fn thinned(loss: &LossConfig, distance: f64, range: f64, later: f64) -> LossChain {
+    let thin = |loss: f64| Probability::new((1.0 - (1.0 - loss) * (1.0 - later)).clamp(0.0, 1.0));
+    let thinned = match *loss {
+        LossConfig::GilbertElliott {
+            good_to_bad,
+            bad_to_good,
+            good_loss,
+            bad_loss,
+        } => LossConfig::GilbertElliott {
+            good_to_bad,
+            bad_to_good,
+            good_loss: thin(good_loss.get()),
+            bad_loss: thin(bad_loss.get()),
+        },
+        LossConfig::None | LossConfig::Bernoulli(_) | LossConfig::Distance { .. } => {
+            LossConfig::Bernoulli(thin(loss.mean_loss(distance, range)))
+        }
+    };
+    thinned.chain(distance, range)
 }
 
 /// Places in the nine cells around each of `places`, on average, where cells are as wide as `range`: no fewer than lie within it.

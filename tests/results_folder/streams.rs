@@ -8,7 +8,7 @@ use desim::text::columns;
 use tempfile::{TempDir, tempdir};
 
 const SCENARIO: &str = "// Who hears whom?\nScenario(name: \"small\", trials: 2, time_limit: 4.0, \
-    arena: (size: (2.5, 2.5)), swarm: (robots: 5, deploy: Uniform), protocol: Heartbeat, detector: Timeout(0.35), radio: (loss: Bernoulli(0.4)))";
+    swarm: (robots: 5, deploy: Uniform), protocol: Heartbeat, detector: Timeout(0.35), radio: (loss: Bernoulli(0.4)), arena: (size: (2.5, 2.5)))";
 
 const STUDY: &str = "// Does patience pay?\nStudy(name: \"patience\", base: \"small.ron\", trials: 8, factors: [(name: \"timeout\", \
     paths: [\"detector\"], levels: [(label: \"short\", values: [Timeout(0.25)]), (label: \"long\", values: [Timeout(0.55)])])], \

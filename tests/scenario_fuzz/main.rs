@@ -119,7 +119,7 @@ fn each_of_300_scenario_files_with_extreme_numbers_is_read_or_refused_with_line_
     assert!(read > MUTANTS / 10, "only {read} are well, so that little is shown");
 }
 
-/// Processor time of this thread so far: others may be using the machine.
+/// Processor time of this thread so far, that of the system for its memory apart: others may be using the machine.
 fn spent() -> Duration {
     let usage = getrusage(UsageWho::RUSAGE_THREAD).expect("the system tells of its threads");
     let time = |time: TimeVal| {
@@ -127,7 +127,7 @@ fn spent() -> Duration {
             [time.tv_sec(), time.tv_usec()].map(|part| u64::try_from(part).expect("no time is negative"));
         Duration::from_secs(seconds) + Duration::from_micros(micros)
     };
-    time(usage.user_time()) + time(usage.system_time())
+    time(usage.user_time())
 }
 
 /// The least time that reading `text` takes, of a few tries.
@@ -138,7 +138,7 @@ fn least_time(text: &str) -> Duration {
         assert!(report.to_string().len() < 50_000, "the report is as long as the file");
         spent() - start
     };
-    (0..5).map(|_| time()).min().unwrap_or_default()
+    (0..3).map(|_| time()).min().unwrap_or_default()
 }
 
 /// Four times the file takes four times as long, or sixteen times where time grows with its square: eight tell them apart.
@@ -165,14 +165,14 @@ fn what_is_wrong_with_a_long_file_is_found_in_time_proportional_to_its_length() 
     ];
     let mut texts: Vec<(String, [String; 2])> = broken
         .iter()
-        .map(|(label, text)| ((*label).to_owned(), [20_000, 80_000].map(text)))
+        .map(|(label, text)| ((*label).to_owned(), [40_000, 160_000].map(text)))
         .collect();
     let faults = |n| format!("{base}, faults: [{}])", "Crash(robots: [7], at: 1.0), ".repeat(n));
     texts.push(("faults at unknown robots".to_owned(), [5_000, 20_000].map(faults)));
     for (label, [short, long]) in texts {
         let (short, long) = (least_time(&short), least_time(&long));
         assert!(
-            long < short * 8 + Duration::from_millis(20),
+            long < short * 8 + Duration::from_millis(100),
             "{label}: {short:?}, then {long:?}"
         );
     }
