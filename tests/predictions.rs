@@ -102,7 +102,7 @@ fn a_reader_that_other_neighbours_timers_wake_reads_as_soon_as_predicted() {
         );
         let found = surprises(&scenario, &summary);
         assert!(found.is_empty(), "{robots} robots: {found:#?}");
-        let at_steps = (timeout.floor() + 1.25) - timeout + 0.5;
+        let at_steps = (f64::floor(timeout) + 1.25) - timeout + 0.5;
         assert!(predicted.value + predicted.accuracy < at_steps - 0.02, "{predicted:?}");
         assert!(measured.ci95[1] < Some(at_steps), "{measured:?}");
     }
