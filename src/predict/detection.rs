@@ -94,7 +94,8 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
             "until the observer reads the next status",
         );
     }
-    let mistaken = share + rate * reading.mean;
+    // Where nearly all time is mistaken, the next mistake begins before the end of one is read.
+    let mistaken = (share + rate * reading.mean).min(1.0);
     push(
         "query_accuracy",
         "query accuracy",

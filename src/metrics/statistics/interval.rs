@@ -65,14 +65,14 @@ pub fn wilson(share: f64, n: f64, z: f64) -> [f64; 2] {
     [low.max(0.0), high.min(1.0)]
 }
 
-/// Wilson's interval of a share at the effective number of trials v(1−v)/Var v, with Student's quantile for Wilson's; at 0 and 1, where
-/// their variance says nothing, the trials count as so many yeses and noes. `None` where they do not differ otherwise.
+/// Wilson's interval of a share at the effective number of trials v(1−v)/Var v, with Student's quantile of so few trials for
+/// Wilson's; at 0 and 1, where their variance says nothing, the trials count as so many yeses and noes. `None` where they do not differ otherwise.
 pub fn share_at(share: f64, moments: Moments) -> Option<[f64; 2]> {
     if share <= 0.0 || share >= 1.0 {
         return Some(wilson(share, moments.trials as f64, normal_quantile()));
     }
     let effective = share * (1.0 - share) / moments.variance;
-    let t = student(moments.freedom, TAIL)?;
+    let t = student(moments.freedom, tail_of_few(moments.trials))?;
     effective.is_finite().then(|| wilson(share, effective, t))
 }
 
