@@ -125,7 +125,7 @@ def ratio(parts, kind):
     effective = most if flat else min(most, value * (1 - value) / moments.variance)
     if effective == math.inf:
         return estimate(value, n=n)
-    return estimate(value, *score(value, effective, student.ppf(1 - TAILS.get(n, 0.025), n - 1)), n)
+    return estimate(value, *score(value, effective, student.ppf(1 - max(TAILS.get(n, 0.025), TAILS[2]), n - 1)), n)
 
 
 def inverse(estimated):

@@ -239,9 +239,9 @@ mod tests {
 
     #[test]
     fn shares_have_an_interval_within_0_and_1_that_is_wilsons_at_the_effective_number_of_trials() {
-        // m = 0.99, s²/n = 0.01²: n_e = 99, t = scipy.stats.t.ppf(1 - 0.015, 3); statsmodels' proportion_confint(0.99·99, 99,
+        // m = 0.99, s²/n = 0.01²: n_e = 99, t = scipy.stats.t.ppf(1 - 0.0175, 3); statsmodels' proportion_confint(0.99·99, 99,
         // method="wilson") with t for z.
-        let t: f64 = 3.896_045_934_296_395_3;
+        let t: f64 = 3.670_003_452_900_844_3;
         let (m, n) = (0.99, 99.0);
         let centre = (m + t * t / (2.0 * n)) / (1.0 + t * t / n);
         let half = t / (1.0 + t * t / n) * (m * (1.0 - m) / n + t * t / (4.0 * n * n)).sqrt();

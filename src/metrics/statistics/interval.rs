@@ -72,7 +72,8 @@ pub fn share_at(share: f64, moments: Moments) -> Option<[f64; 2]> {
         return Some(wilson(share, moments.trials as f64, normal_quantile()));
     }
     let effective = share * (1.0 - share) / moments.variance;
-    let t = student(moments.freedom, tail_of_few(moments.trials))?;
+    // Wilson's interval is skewed as shares are, so that three trials need no more room than two.
+    let t = student(moments.freedom, tail_of_few(moments.trials).max(tail_of_few(2)))?;
     effective.is_finite().then(|| wilson(share, effective, t))
 }
 
