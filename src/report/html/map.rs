@@ -72,7 +72,8 @@ fn map(input: &PageInput, record: &TrialRecord, load: &[f64]) -> Plot {
     let side = |title: &str, half: f64| -> Axis {
         axis(title)
             .range_mode(plotly::layout::RangeMode::Normal)
-            .range(AxisRange::new(-half, half))
+            // A little beyond the walls, so that a tick at their corner has room for both of its labels.
+            .range(AxisRange::new(-1.05 * half, 1.05 * half))
             .constrain(AxisConstrain::Domain)
             // On a telephone more would touch each other.
             .n_ticks(7)
