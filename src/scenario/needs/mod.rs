@@ -1,0 +1,221 @@
+//! What a scenario asks of a machine, before it is run: the memory that a trial takes and the events that it has, as upper
+//! bounds in closed form. What is too much is refused, what is much is warned of, each with the number and with the field to
+//! change.
+//!
+//! The bytes are of the command at its peak, the writing of the results included, as measured; they hold within a factor of
+//! about three where a scenario keeps what it may keep.
+
+mod view;
+
+use super::checks::Problem;
+use super::{Scenario, limits};
+use view::View;
+
+/// Bytes of the program itself.
+const PROGRAM: f64 = 30e6;
+/// Of a robot, its traffic by role and topic included.
+const ROBOT: f64 = 4000.0;
+/// Of an observer and a subject.
+const PAIR: f64 = 200.0;
+/// Of a copy under way.
+const COPY: f64 = 140.0;
+/// Of a status sent lately, and of a lost copy of it, in lists that double.
+const STATUS: f64 = 32.0;
+const LOST: f64 = 16.0;
+/// Of an interval that φ-accrual remembers.
+const INTERVAL: f64 = 16.0;
+/// Of a suspicion, a failed robot at an observer, a failure.
+const SUSPICION: f64 = 900.0;
+const OBSERVED: f64 = 250.0;
+const FAILURE: f64 = 1500.0;
+/// Of a sample, of a position in it, of an entry of the series, and of a topic in that.
+const SAMPLE: f64 = 450.0;
+const POSITION: f64 = 100.0;
+const ENTRY: f64 = 300.0;
+const TOPIC: f64 = 250.0;
+/// Of a finished trial that waits for the others, and the share of its records that it keeps.
+const TRIAL: f64 = 70_000.0;
+const KEPT: f64 = 0.3;
+
+/// What a scenario asks of a machine.
+struct Needs {
+    shares: Vec<Share>,
+    /// Events of a trial: steps, ticks, frames and what robots hear of them.
+    events: f64,
+}
+
+/// A share of the memory.
+struct Share {
+    what: &'static str,
+    bytes: f64,
+    /// The field best changed, others that it depends on, and how.
+    field: &'static str,
+    also: &'static [&'static str],
+    help: &'static str,
+}
+
+/// What is more than a machine has.
+pub fn problems(scenario: &Scenario) -> Vec<Problem> {
+    let needs = Needs::of(scenario);
+    let memory = needs.memory(limits::MEMORY, "more than desim goes along with");
+    let time = time(needs.events, limits::EVENTS, "a trial", "which would take weeks");
+    memory.into_iter().chain(time).collect()
+}
+
+/// What is much for a machine.
+pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
+    let needs = Needs::of(scenario);
+    let memory = needs.memory(
+        limits::MUCH_MEMORY,
+        "and so does each other trial that runs at the same time",
+    );
+    let all = needs.events * f64::from(scenario.trials);
+    let time = time(all, limits::MANY_EVENTS, "all trials", "which may take days");
+    memory.into_iter().chain(time).collect()
+}
+
+impl Needs {
+    fn memory(&self, most: f64, verdict: &str) -> Option<Problem> {
+        let total = self.shares.iter().map(|share| share.bytes).sum::<f64>() + PROGRAM;
+        let largest = self.shares.iter().max_by(|a, b| a.bytes.total_cmp(&b.bytes))?;
+        (total > most).then(|| {
+            let message = format!(
+                "a trial may take {} of memory, {verdict}: {} of it for {}",
+                words(total),
+                words(largest.bytes),
+                largest.what
+            );
+            Problem::new(largest.field, message, largest.help).with(largest.also)
+        })
+    }
+
+    fn of(scenario: &Scenario) -> Self {
+        let view = View::of(scenario);
+        let mut shares = vec![
+            Share {
+                what: "robots and whom they hear",
+                bytes: view.robots * ROBOT + view.pairs * (PAIR + view.window() * INTERVAL),
+                field: "swarm.robots",
+                also: &["radio.range", "swarm.deploy", "arena.size", "detector"],
+                help: "make `swarm.robots` fewer, or `radio.range` shorter",
+            },
+            Share {
+                what: "copies of frames under way",
+                bytes: view.copies() * COPY,
+                field: "radio.latency",
+                also: &["radio.range", "swarm.robots", "gossip", "protocol", "swarm.deploy"],
+                help: "make `radio.latency` or `radio.range` shorter, or what is sent less frequent",
+            },
+            Share {
+                what: "statuses that suspicions are traced to",
+                bytes: view.log(),
+                field: "detector",
+                also: &["gossip.status.interval", "swarm.robots", "radio.loss"],
+                help: "make `detector` less patient, or `gossip.status.interval` longer",
+            },
+            Share {
+                what: "suspicions",
+                bytes: view.suspicions() * SUSPICION,
+                field: "time_limit",
+                also: &["detector", "radio.loss", "swarm.robots", "gossip.status.interval"],
+                help: "make `time_limit` shorter, `detector` more patient, or fewer robots hear each other",
+            },
+            Share {
+                what: "failures and who notices them",
+                bytes: view.failures(),
+                field: "faults",
+                also: &["time_limit", "control.period", "swarm.robots"],
+                help: "make hazards smaller, failures longer, or `time_limit` shorter",
+            },
+            Share {
+                what: "samples and positions",
+                bytes: view.samples * (SAMPLE + view.robots * POSITION),
+                field: "metrics.sample_interval",
+                also: &["time_limit", "swarm.robots"],
+                help: "make `metrics.sample_interval` longer",
+            },
+            Share {
+                what: "the series of traffic",
+                bytes: view.entries() * (ENTRY + view.topics() * TOPIC),
+                field: "metrics.series_every",
+                also: &["metrics.sample_interval", "time_limit"],
+                help: "make `metrics.series_every` more, or 0 for no series",
+            },
+        ];
+        // What is kept of the other trials until all are there: not who hears whom, nor positions.
+        let records = view.suspicions() * SUSPICION
+            + view.failures()
+            + view.samples * SAMPLE
+            + view.entries() * (ENTRY + view.topics() * TOPIC)
+            + view.robots * ROBOT;
+        shares.push(Share {
+            what: "the other trials, until all are finished",
+            bytes: f64::from(scenario.trials - 1) * (TRIAL + KEPT * records),
+            field: "trials",
+            also: &["time_limit", "metrics.sample_interval", "swarm.robots"],
+            help: "make `trials` fewer, or what is kept of each less: `metrics.sample_interval` longer",
+        });
+        Self {
+            shares,
+            events: view.events(),
+        }
+    }
+}
+
+/// What to say of `events` if they are more than `most`.
+fn time(events: f64, most: f64, whose: &str, verdict: &str) -> Option<Problem> {
+    (events > most).then(|| {
+        let message = format!("{whose} may have {events:.0e} events, {verdict}");
+        let help = "make `time_limit` shorter, what repeats less frequent, or the swarm smaller or thinner";
+        let also = ["swarm.robots", "control.period", "radio.range", "gossip", "trials"];
+        Problem::new("time_limit", message, help).with(&also)
+    })
+}
+
+/// Bytes as people say them.
+fn words(bytes: f64) -> String {
+    match bytes {
+        ..1e9 => format!("{:.0} MB", bytes / 1e6),
+        ..1e12 => format!("{:.1} GB", bytes / 1e9),
+        ..1e15 => format!("{:.1} TB", bytes / 1e12),
+        _ => format!("{bytes:.1e} bytes"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::parse;
+
+    /// Of a small arena that is sampled only where that is what is looked at.
+    fn needs(sections: &str) -> f64 {
+        let text = format!("Scenario(name: \"a\", {sections})");
+        let scenario = parse("a.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"));
+        let needs = Needs::of(&scenario);
+        (needs.shares.iter().map(|share| share.bytes).sum::<f64>() + PROGRAM) / 1e6
+    }
+
+    /// Peak memory of the command as the system told it, MB, on 64 bits, of a run of each scenario with one thread.
+    #[test]
+    fn the_estimate_is_no_less_than_what_runs_took_and_no_more_than_three_times_as_much() {
+        let lossy = "arena: (size: (6.0, 6.0)), protocol: Heartbeat, detector: Timeout(0.15), radio: (loss: Bernoulli(0.5), latency: Constant(0.0))";
+        let still = "arena: (size: (6.0, 6.0)), protocol: Heartbeat";
+        let unsampled = "metrics: (sample_interval: 0.0)";
+        for (sections, measured) in [
+            (format!("time_limit: 200.0, swarm: (robots: 40, deploy: Uniform), {lossy}"), 173.0),
+            (format!("trials: 20, time_limit: 100.0, swarm: (robots: 40, deploy: Uniform), {lossy}, {unsampled}"), 405.0),
+            (format!("trials: 3000, time_limit: 1.0, swarm: (robots: 40, deploy: Uniform), {still}, control: (period: 1.0), {unsampled}"), 314.0),
+            (format!("time_limit: 500.0, swarm: (robots: 2, deploy: Uniform), {still}, metrics: (sample_interval: 0.001)"), 500.0),
+            (format!("time_limit: 1000.0, swarm: (robots: 2, deploy: Uniform), {still}, metrics: (sample_interval: 0.001, series_every: 0)"), 445.0),
+            ("time_limit: 100.0, swarm: (robots: 200, deploy: Uniform), arena: (size: (20.0, 20.0)), protocol: Heartbeat, gossip: (status: (interval: 10.0)), detector: Timeout(30.0), metrics: (sample_interval: 0.01, series_every: 0)".to_owned(), 181.0),
+            (format!("time_limit: 1.0, swarm: (robots: 20000, deploy: Uniform), arena: (size: (200.0, 200.0)), protocol: Heartbeat, {unsampled}"), 110.0),
+            (format!("time_limit: 1.0, swarm: (robots: 20000, deploy: Uniform), arena: (size: (60.0, 60.0)), protocol: Heartbeat, {unsampled}"), 444.0),
+            (format!("time_limit: 100.0, swarm: (robots: 100, deploy: Uniform), {still}, radio: (latency: Constant(50.0)), {unsampled}"), 205.0),
+            (format!("time_limit: 300.0, swarm: (robots: 300, deploy: Uniform), {still}, detector: PhiAccrual(dialect: Chitchat, window: 100000), {unsampled}"), 785.0),
+            (format!("time_limit: 2000.0, swarm: (robots: 300, deploy: Uniform), arena: (size: (30.0, 30.0)), wander: RandomWaypoint(speed: 0.3), motion: (max_speed: 0.3), gossip: (status: (interval: 1.0)), protocol: Heartbeat, detector: Timeout(3.0), {unsampled}"), 281.0),
+        ] {
+            let needs = needs(&sections);
+            assert!((measured..3.0 * measured).contains(&needs), "{sections}: {measured} MB measured, {needs:.0} MB estimated");
+        }
+    }
+}
