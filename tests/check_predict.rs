@@ -7,7 +7,7 @@ use assert_cmd::Command;
 use nix::sys::resource::{UsageWho, getrusage};
 
 #[allow(dead_code)] // What a mutant misspells matters elsewhere.
-#[path = "scenario_fuzz/mutations.rs"]
+#[path = "scenario/fuzz/mutations.rs"]
 mod mutations;
 mod shipped;
 

@@ -14,8 +14,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;
 
-#[path = "shipped/mod.rs"]
-mod shipped;
+use crate::shipped;
 
 /// Still robots within range of each other, their clocks apart, whose statuses are followed as soon as they arrive.
 fn still(robots: u32, trials: u32, seconds: f64, more: &str) -> Scenario {

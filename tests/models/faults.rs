@@ -12,7 +12,7 @@ use desim::simulation::{DriverKind, run_trial};
 use proptest::prelude::*;
 use tokio_util::sync::CancellationToken;
 
-mod shipped;
+use crate::shipped;
 
 fn scenario(text: &str) -> Scenario {
     parse("test.ron", text, &[]).unwrap_or_else(|report| panic!("{report}"))

@@ -11,7 +11,7 @@ use desim::scenario::{
     Override, ProtocolConfig, Report, Scenario, Style, examine, json_schema, load, parse, question, to_ron,
 };
 
-mod shipped;
+use crate::shipped;
 
 const BASE: &str = r#"// Does it work?
 Scenario(

@@ -2,7 +2,7 @@
 
 use desim::scenario::{Warnings, contents, examine};
 
-mod shipped;
+use crate::shipped;
 
 const BACKBONE: &str = "Backbone(targets: Ring(count: 3, radius: 3.0))";
 const RUMOR: &str = "Rumor(mode: PushPull, sources: Robots([3]))";

@@ -10,9 +10,9 @@ use parquet::schema::types::Type;
 use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;
 
-use crate::fixture::{record, run, scenario};
+use super::fixture::{record, run, scenario};
 
-const README: &str = include_str!("../../results/README.md");
+const README: &str = include_str!("../../../results/README.md");
 
 /// A documented column: its name, in which `<…>` stands for any word, and its type.
 #[derive(Debug)]

@@ -12,7 +12,7 @@ use parquet::record::{Field, Row};
 use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;
 
-use crate::fixture::{GivenUp, record, run, scenario};
+use super::fixture::{GivenUp, record, run, scenario};
 
 const TRIALS: u32 = 7;
 

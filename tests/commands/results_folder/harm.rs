@@ -6,10 +6,7 @@ use std::process::Command;
 
 use tempfile::{TempDir, tempdir};
 
-#[path = "../harm/mod.rs"]
-mod tools;
-
-use tools::{Chance, assert_same, desim, files, flip, kill, timed, tree, tries};
+use crate::harm::{Chance, assert_same, desim, files, flip, kill, timed, tree, tries};
 
 const SCENARIO: &str = "// Who is missed?\nScenario(name: \"missed\", trials: 12, time_limit: 20.0, arena: (size: (3.0, 3.0)), \
     swarm: (robots: 12, deploy: Uniform), protocol: Heartbeat, control: (period: 0.5), \
@@ -245,7 +242,7 @@ fn a_page_goes_where_it_is_asked_for_whole_or_not_at_all() {
 
 #[test]
 fn the_readme_says_how_to_check_a_folder_by_hand() {
-    let readme = include_str!("../../results/README.md");
+    let readme = include_str!("../../../results/README.md");
     let start = readme
         .find("grep -v '^  \"xxh3_128\"'")
         .expect("the command is documented");

@@ -8,7 +8,7 @@ use desim::metrics::{Outcome, Summary, TrialRecord};
 use desim::report::{PAGE_MARK, PageInput, page};
 use tempfile::tempdir;
 
-use crate::fixture::{record, scenario};
+use super::fixture::{record, scenario};
 
 const TOPICS: [&str; 4] = ["status", "request", "parent strand", "child strand"];
 const ROLES: [&str; 4] = ["free", "root", "networker", "worker"];

@@ -9,7 +9,7 @@ use desim::scenario::Scenario;
 use tempfile::{TempDir, tempdir};
 use tokio_util::sync::CancellationToken;
 
-use crate::fixture::{record, run, scenario};
+use super::fixture::{record, run, scenario};
 
 /// Finished results of `trials` made-up trials of `scenario`.
 fn write(dir: &Path, scenario: &Scenario) {

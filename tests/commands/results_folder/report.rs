@@ -8,7 +8,7 @@ use desim::predict::{Holds, Prediction, Surprise};
 use desim::report::{Asked, Input, Speed, terminal};
 use desim::text::{Style, columns};
 
-use crate::fixture::record;
+use super::fixture::record;
 
 const TOPICS: [&str; 4] = ["status", "request", "parent strand", "child strand"];
 const COLOURED: Style = Style {

@@ -7,12 +7,12 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use crate::command::{comparison, desim, text};
+use super::command::{comparison, desim, text};
 
 /// The folder of the study `name` and its results, as `desim compare` and `desim report` leave them, and what they printed.
 fn finished(name: &str) -> (TempDir, String, String, Value) {
     let dir = tempdir().unwrap();
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/studies/numbers");
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/commands/studies/numbers");
     for file in ["base.ron".to_owned(), format!("{name}.ron")] {
         fs::copy(own.join(&file), dir.path().join(&file)).unwrap();
     }
@@ -152,7 +152,7 @@ fn every_axis_of_names_is_one_whatever_the_names_and_no_two_settings_share_a_lin
 #[test]
 fn a_study_that_can_find_nothing_is_told_so_before_it_runs_with_the_trials_that_it_needs() {
     let dir = tempdir().unwrap();
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/studies/numbers");
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/commands/studies/numbers");
     fs::copy(own.join("base.ron"), dir.path().join("base.ron")).unwrap();
     let study = fs::read_to_string(own.join("names.ron")).unwrap();
     // 45 pairs in two figures: 90 · 2/2⁶; 90 · 2/2ⁿ < 0.05 from 12 trials on; below 0.05 · 2⁶/2 = 1.6 one difference is allowed.
@@ -206,7 +206,7 @@ fn a_study_that_can_find_nothing_is_told_so_before_it_runs_with_the_trials_that_
 
 #[test]
 fn a_study_given_for_a_scenario_and_a_scenario_for_a_study_name_the_right_command_in_the_first_line() {
-    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/studies/numbers");
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/commands/studies/numbers");
     for (arguments, right) in [
         (["scenario", "names.ron"], "desim compare names.ron"),
         (["compare", "base.ron"], "desim scenario base.ron"),

@@ -4,10 +4,7 @@ use std::fs;
 
 use tempfile::{TempDir, tempdir};
 
-#[path = "../harm/mod.rs"]
-mod tools;
-
-use tools::{Chance, assert_same, desim, flip, kill, timed, tree, tries};
+use crate::harm::{Chance, assert_same, desim, flip, kill, timed, tree, tries};
 
 const BASE: &str = "Scenario(name: \"base\", time_limit: 30.0, arena: (size: (4.0, 4.0)), control: (period: 0.5), \
     swarm: (robots: 12, deploy: Uniform), protocol: Heartbeat, gossip: (status: (interval: 0.5)), \

@@ -5,5 +5,3 @@ mod factors;
 mod files;
 mod harm;
 mod report;
-#[path = "../shipped/mod.rs"]
-mod shipped;

@@ -5,7 +5,7 @@ use std::time::Duration;
 use assert_cmd::Command;
 use desim::scenario::parse;
 
-use crate::mutations;
+use super::mutations;
 
 /// Makes a valid mutant quick to run, and still longer than targets must be held.
 const SHORT: &str = "time_limit=12.0";

@@ -7,10 +7,10 @@ use nix::sys::time::TimeVal;
 
 use desim::scenario::{Override, Report, Scenario, parse, to_ron};
 
+use crate::shipped;
+
 mod command;
 mod mutations;
-#[path = "../shipped/mod.rs"]
-mod shipped;
 mod studies;
 
 const MUTANTS: u32 = 300;

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use desim::scenario::load_study;
 
-use crate::{mutations, shipped};
+use super::mutations;
+use crate::shipped;
 
 const MUTANTS: u32 = 200;
 

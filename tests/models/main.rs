@@ -1,0 +1,15 @@
+//! The models of a run, held against closed forms and invariants: radio, gossip, faults, phases, motion, drivers.
+
+#[path = "../shipped/mod.rs"]
+mod shipped;
+
+mod codecs;
+mod drivers;
+mod exchangeable;
+mod faults;
+mod gossip;
+mod limits;
+mod phases;
+mod radio;
+mod scaling;
+mod wandering;

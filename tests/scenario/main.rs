@@ -1,0 +1,8 @@
+//! Scenario files: what ships, what people mistype, what they are warned of.
+
+#[path = "../shipped/mod.rs"]
+mod shipped;
+
+mod files;
+mod fuzz;
+mod warnings;
