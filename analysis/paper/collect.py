@@ -34,8 +34,8 @@ Section = dict[str, Any]
 FREE = "free"
 BAND = (0.1, 0.9)
 """Quantiles of the band around a median over time."""
-OPTIMA = ("same_robot", "best_assignment", "after_hold")
-"""To the formation at completion by the same robots or by the best placed ones; to the formation at the trial's end."""
+OPTIMA = ("same_robot", "best_assignment")
+"""To the formation at completion, by the same robots or by the best placed ones."""
 
 
 def collect(results: Path, known: Section, trials: int = TRIALS) -> tuple[Section, dict[str, str]]:
@@ -77,19 +77,18 @@ def _completion(robots: int, links: int, folder: Folder) -> Section:
         "limit": folder.limit,
         "robots_used": folder.summary["robots_used"],
         "optimum": {name: [round(way[name], 1) for way in ways] for name in OPTIMA},
-        "moved_in_hold_m": round(max(way["moved"] for way in ways), 3),
         "final": final_formation(folder, 0),
     }
 
 
 def _ways(folder: Folder, trial: int) -> dict[str, float]:
-    """The optimal steps of one trial, to its formation at completion, and to where the hold after it has left that."""
+    """The optimal steps of one trial to its formation at completion."""
     robots = folder.table("robots").filter(trial=trial).sort("robot")
-    samples = folder.table("trajectories").filter(trial=trial)
+    path = way(folder, trial)
     ends = [(float(x), float(y)) for x, y in robots.select("x_m", "y_m").iter_rows()]
     completed = folder.trials.filter(trial=trial)["steps_to_completion"][0]
-    starts = places_at(samples, 0.0)
-    then = ends if completed is None else places_at(samples, completed * folder.control_period)
+    starts = places_at(path, 0.0)
+    then = ends if completed is None else places_at(path, completed * folder.control_period)
     formation = [robot for robot, role in enumerate(robots["role"]) if role != FREE]
 
     def steps(metres: float) -> float:
@@ -101,9 +100,16 @@ def _ways(folder: Folder, trial: int) -> dict[str, float]:
     return {
         "same_robot": steps(optimal.same_robot(of(starts), of(then))),
         "best_assignment": steps(optimal.best_assignment(starts, of(then))),
-        "after_hold": steps(optimal.same_robot(of(starts), of(ends))),
-        "moved": optimal.same_robot(of(then), of(ends)),
     }
+
+
+def way(folder: Folder, trial: int) -> pl.DataFrame:
+    """Where the robots of a trial were: its samples, and its end, which lies after the last of them."""
+    samples = folder.table("trajectories").filter(trial=trial).select("time_s", "robot", "x_m", "y_m")
+    end_s = folder.trials.filter(trial=trial)["steps"][0] * folder.control_period
+    ends = folder.table("robots").filter(trial=trial).select(pl.lit(end_s).alias("time_s"), "robot", "x_m", "y_m")
+    before = samples.filter(pl.col("time_s") < end_s - folder.control_period / 2)
+    return pl.concat([before, ends], how="vertical_relaxed")
 
 
 def places_at(samples: pl.DataFrame, time_s: float) -> list[optimal.Point]:

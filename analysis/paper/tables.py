@@ -43,7 +43,7 @@ def with_interval(given: Estimate, digits: int = 0, scale: float = 1.0) -> str:
 
 def completion(runs: Section, title: str = "Time to completion") -> str:
     """Steps and optimum."""
-    steps = ["median steps", "paper", "optimum", "best assignment", "after the hold"]
+    steps = ["median steps", "paper", "optimum", "best assignment"]
     head = ["robots", "links", "completed", *steps, "robots used"]
     paper = reference.completion()
     rows = [
@@ -53,7 +53,7 @@ def completion(runs: Section, title: str = "Time to completion") -> str:
             f"{run['completed']} of {len(run['steps'])}",
             with_interval(run["median"]),
             plain(paper[label]),
-            *(plain(quantile(run["optimum"][name], 0.5)) for name in ("same_robot", "best_assignment", "after_hold")),
+            *(plain(quantile(run["optimum"][name], 0.5)) for name in ("same_robot", "best_assignment")),
             plain(run["robots_used"]["value"], 1),
         ]
         for label, run in runs.items()

@@ -20,7 +20,7 @@ def folder(path: Path, finished: bool = True) -> None:
     manifest = {"finished": finished, "version": "0", "commit": None, "seed": 1, "scenario": scenario}
     (path / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
     pl.DataFrame(
-        {"trial": [0, 1], "robots": [3, 3], "steps": [30, 40], "steps_to_completion": [25, None]},
+        {"trial": [0, 1], "robots": [3, 3], "steps": [40, 40], "steps_to_completion": [25, None]},
     ).write_parquet(path / "trials.parquet")
     ends = [(0, 0, 0.0, "root"), (0, 1, 3.0, "worker"), (0, 2, 0.0, "free")]
     ends += [(1, robot, x, role) for _, robot, x, role in ends]

@@ -23,12 +23,15 @@ class Collect(unittest.TestCase):
         # Completed at step 25, 2.5 s: between x = 2.0 m and 2.4 m. 1.2 m at 0.5 m/s take 2.4 s.
         ways = collect._ways(self.folder(), 0)
         self.assertAlmostEqual(ways["same_robot"], 24.0, places=5)
-        self.assertAlmostEqual(ways["after_hold"], 40.0, places=5)
-        self.assertAlmostEqual(ways["moved"], 0.8, places=5)
 
     def test_a_trial_that_did_not_complete_is_measured_to_its_end(self) -> None:
-        ways = collect._ways(self.folder(), 1)
-        self.assertEqual(ways["same_robot"], ways["after_hold"])
+        # 2 m, at the end of its 4 s, a second after the last sample.
+        self.assertAlmostEqual(collect._ways(self.folder(), 1)["same_robot"], 40.0, places=5)
+
+    def test_after_the_last_sample_robots_go_on_to_where_they_end(self) -> None:
+        path = collect.way(self.folder(), 1)
+        for time, x in ((3.0, 2.4), (3.5, 2.7), (4.0, 3.0)):
+            self.assertAlmostEqual(collect.places_at(path, time)[1][0], x, places=6)
 
     def test_a_robot_is_on_the_line_between_two_samples(self) -> None:
         samples = self.folder().table("trajectories").filter(trial=0)
