@@ -61,6 +61,50 @@ fn robots_that_stand_still_are_predicted_throughout_by_the_published_forms() {
     assert_eq!(refused, ["channel_utilisation"]);
 }
 
+/// What begins within a timeout of the end is no mistake yet, and a link is watched from its first arrival on. That takes half an interval and
+/// 1/0.8 = 1.25 intervals, or 1 + 0.2 · 5 = 2 where one time in five is a burst of five.
+#[test]
+fn rates_are_off_by_the_share_of_the_run_in_which_no_mistake_can_begin() {
+    for (loss, missing) in [
+        ("Bernoulli(0.2)", 3.5 + 0.5 + 1.25),
+        ("GilbertElliott(good_to_bad: 0.05, bad_to_good: 0.2)", 3.5 + 0.5 + 2.0),
+    ] {
+        let expected = preflight(&format!(
+            "{ROW}, radio: (range: 1.0, loss: {loss}, latency: Constant(0.05))"
+        ));
+        for name in ["mistake_rate_hz", "mistake_recurrence_s"] {
+            let found = expected.get(name).unwrap();
+            assert!(
+                (found.accuracy / found.value - missing / 400.0).abs() < 1e-9,
+                "{loss}: {found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn where_all_begin_together_a_failure_may_come_half_an_interval_from_the_middle_of_one() {
+    for (phase, accuracy) in [("Together", 0.5), ("Random", 0.0)] {
+        let expected = preflight(&ROW.replace("Together", phase));
+        let found = expected.get("detection_time_s").unwrap();
+        assert!((found.accuracy - accuracy).abs() < 1e-12, "{phase}: {found:?}");
+    }
+}
+
+/// Two robots, control steps every 0.5 s at which both send, latency 0.05 s: a status waits 0.45 s for a step. The timer, which fires
+/// once every 3.2 s and then 0.2 s after an arrival, takes 0.25 s off one wait in 3.2. The mistake itself is (3 + 1.25) η − 3.2 s.
+#[test]
+fn of_two_robots_that_begin_together_one_reads_sooner_where_its_timer_wakes_it() {
+    let pair = ROW
+        .replace("robots: 3", "robots: 2")
+        .replace(", (2.0, 0.0)", "")
+        .replace("3.5", "3.2");
+    let expected = preflight(&format!(
+        "{pair}, radio: (range: 1.0, loss: Bernoulli(0.2), latency: Constant(0.05))"
+    ));
+    assert_value(&expected, "mistake_duration_s", 1.05 + 0.45 - 0.25 / 3.2);
+}
+
 #[test]
 fn bursts_and_distance_have_their_own_mean_loss() {
     let bursts = preflight(&format!(

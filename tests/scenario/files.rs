@@ -176,6 +176,22 @@ fn every_diagnostic_has_line_column_and_path() {
 }
 
 #[test]
+fn columns_are_counted_in_letters_however_many_bytes_they_have() {
+    let report = read(&BASE.replace("loss:", "/* é漢🤖 */ los:"), &[]).unwrap_err();
+    let place = report.diagnostics[0].place.as_ref().unwrap();
+    assert_eq!((place.line, place.column), (7, 25 + 10));
+    assert!(report.to_string().contains("/* é漢🤖 */ los"), "{report}");
+}
+
+#[test]
+fn a_fault_is_underlined_for_as_long_as_the_signs_in_it_are_shown() {
+    let shown = shown("\"base\"", "\"a\u{1b}\u{1b}b\"");
+    let under = shown.lines().skip_while(|line| !line.contains("\"a␛␛b\"")).nth(1);
+    let under = under.unwrap_or_else(|| panic!("{shown}"));
+    assert_eq!(under.matches(['─', '┬']).count(), "\"a␛␛b\"".chars().count(), "{shown}");
+}
+
+#[test]
 fn all_that_is_wrong_is_named_at_once_and_nothing_that_follows_from_it() {
     let text = BASE
         .replace("robots: 40", "robot: 40")

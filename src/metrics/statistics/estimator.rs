@@ -271,6 +271,15 @@ mod tests {
     }
 
     #[test]
+    fn things_that_fare_alike_in_a_trial_count_as_few() {
+        // Var = 4 · (5/40)² · 4/3 = 1/12, so that the forty are worth ¼ · 12 = 3 things; t = scipy.stats.t.ppf(1 - 0.0175, 3).
+        let t: f64 = 3.670_003_452_900_844_3;
+        let half = t / (1.0 + t * t / 3.0) * (0.25_f64 / 3.0 + t * t / 36.0).sqrt();
+        let found = Estimator::ShareOf.estimate(&[[0.0, 10.0], [10.0, 10.0], [0.0, 10.0], [10.0, 10.0]]);
+        assert_interval(found, 0.5 - half, 0.5 + half);
+    }
+
+    #[test]
     fn a_rate_of_few_events_has_the_exact_poisson_limits_and_of_none_an_upper_one() {
         // scipy.stats.chi2.ppf(0.025, 2·4)/2, scipy.stats.chi2.ppf(0.975, 2·5)/2: four events in 400 s. They are spread more evenly
         // than by chance, which does not make the rate surer.

@@ -84,3 +84,16 @@ impl Moments {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trial_adds_to_a_ratio_what_it_is_off_it_over_all_that_was_watched() {
+        // R = 16/8 = 2: off it by 3 − 2, 8 − 6, 1 − 2 and 4 − 6, whatever their own ratios.
+        let (ratio, terms) = of_ratio(&[[3.0, 1.0], [8.0, 3.0], [1.0, 1.0], [0.0, 0.0], [4.0, 3.0]]).unwrap();
+        assert!((ratio - 2.0).abs() < 1e-15);
+        assert_eq!(terms, [Some(0.125), Some(0.25), Some(-0.125), None, Some(-0.25)]);
+    }
+}

@@ -127,6 +127,12 @@ pub fn finding(comparison: &Comparison, figure: &Figure) -> String {
     let mut words: Vec<String> = Vec::new();
     match &largest[..] {
         [] if comparison.effects_in(&figure.key).next().is_none() => return String::new(),
+        [] if comparison
+            .effects_in(&figure.key)
+            .all(|effect| effect.verdict == Verdict::NotComparable) =>
+        {
+            return " Nothing can be averaged over the others, for a setting has no value.".to_owned();
+        }
         [] => words.push(" Averaged over the others, no factor shows a detectable effect.".to_owned()),
         [first, second, ..] if apart(size(first), size(second)) == 0.0 => words.push(format!(
             " Averaged over the others, {} and {} matter alike: ",
@@ -145,6 +151,13 @@ pub fn finding(comparison: &Comparison, figure: &Figure) -> String {
     if !steps.is_empty() {
         words.push(format!("{}.", steps.join("; ")));
     }
+    let valueless = valueless(comparison, figure);
+    if !valueless.is_empty() {
+        words.push(format!(
+            " Of {} nothing can be said, for a setting has no value.",
+            valueless.join(" and ")
+        ));
+    }
     for interaction in comparison.interactions_in(&figure.key) {
         match interaction.verdict {
             Dependence::Depends => words.push(format!(" Mind that {}.", depends(interaction, figure))),
@@ -158,6 +171,19 @@ pub fn finding(comparison: &Comparison, figure: &Figure) -> String {
         }
     }
     words.concat()
+}
+
+/// The factors of which no two levels can be compared.
+fn valueless<'a>(comparison: &'a Comparison, figure: &Figure) -> Vec<&'a str> {
+    let names = comparison.factors.iter().map(|factor| factor.name.as_str());
+    let is_valueless = |name: &&str| {
+        let mut effects = comparison
+            .effects_in(&figure.key)
+            .filter(|effect| effect.factor == *name)
+            .peekable();
+        effects.peek().is_some() && effects.all(|effect| effect.verdict == Verdict::NotComparable)
+    };
+    names.filter(is_valueless).collect()
 }
 
 /// What levels of single factors do to a figure, and whether that depends on other factors.

@@ -138,10 +138,17 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &[&Setting]
     let name = &figure.name;
     let there = label(comparison, reference);
     let tally = format!("{}{}", tally(comparison, figure, there), at_worst(comparison, figure));
-    let at_reference = comparison
-        .setting(reference)
-        .map_or(String::new(), |setting| value(setting, figure));
     let others = elsewhere(comparison, figure);
+    let at_reference = comparison.setting(reference);
+    let Some(at_reference) = at_reference.filter(|setting| known(setting, figure).is_some()) else {
+        return format!(
+            "{there} has no value of {name}, so that nothing can be held against it. {} the {} {name}: {}.{others}",
+            have(best),
+            superlative(figure),
+            value(best[0], figure)
+        );
+    };
+    let at_reference = value(at_reference, figure);
     if best.iter().any(|setting| setting.name == reference) {
         let way = comparative(figure);
         return format!("No setting has a {way} {name} than {there}, {at_reference}. {tally}{others}");
@@ -181,6 +188,7 @@ fn tally(comparison: &Comparison, figure: &Figure, there: &str) -> String {
     let alike = number(&|pair| pair.verdict == Verdict::NoDetectableDifference && pair.p_adjusted.is_none());
     let unclear = of(Verdict::NoDetectableDifference) - alike;
     let (better, worse, cannot_tell) = (of(Verdict::Better), of(Verdict::Worse), of(Verdict::CannotTell));
+    let not_comparable = of(Verdict::NotComparable);
     let mut parts = vec![
         format!("{better} {} better", if better == 1 { "is" } else { "are" }),
         format!("{worse} worse"),
@@ -190,6 +198,9 @@ fn tally(comparison: &Comparison, figure: &Figure, there: &str) -> String {
     }
     if cannot_tell > 0 {
         parts.push(format!("{cannot_tell} cannot be told with so few trials"));
+    }
+    if not_comparable > 0 {
+        parts.push(format!("{not_comparable} cannot be compared"));
     }
     let show = if unclear == 1 { "shows" } else { "show" };
     format!(
@@ -229,7 +240,8 @@ fn elsewhere(comparison: &Comparison, primary: &Figure) -> String {
             Verdict::Better | Verdict::Worse => change(&cost.difference, cost.relative, primary),
             Verdict::CannotTell => "too few trials to tell".to_owned(),
             Verdict::NoDetectableDifference if cost.p_adjusted.is_none() => "the same in every trial".to_owned(),
-            Verdict::NoDetectableDifference | Verdict::NotComparable => "no detectable difference".to_owned(),
+            Verdict::NoDetectableDifference => "no detectable difference".to_owned(),
+            Verdict::NotComparable => "not comparable".to_owned(),
         };
         Some(format!(
             " {} is best in {}, {}, with {}: {cost}.",
@@ -293,7 +305,7 @@ fn aside(comparison: &Comparison, pair: &Pair, figure: &Figure) -> String {
 
 fn among_all(comparison: &Comparison, figure: &Figure, best: &[&Setting]) -> String {
     let is_best = |name: &str| best.iter().any(|setting| setting.name == name);
-    let mut groups: [Vec<&str>; 3] = Default::default();
+    let mut groups: [Vec<&str>; 4] = Default::default();
     for other in comparison.settings.iter().filter(|setting| !is_best(&setting.name)) {
         let mut outcomes = best.iter().filter_map(|leader| {
             let is_it = |pair: &&Pair| {
@@ -309,13 +321,14 @@ fn among_all(comparison: &Comparison, figure: &Figure, best: &[&Setting]) -> Str
             Some(match pair.verdict {
                 verdict if verdict == wins => 0,
                 Verdict::CannotTell => 2,
+                Verdict::NotComparable => 3,
                 _ => 1,
             })
         });
         let Some(first) = outcomes.next() else { continue };
         groups[outcomes.fold(first, usize::max)].push(&other.label);
     }
-    let [beaten, unclear, untold] = groups;
+    let [beaten, unclear, untold, valueless] = groups;
     let (name, it) = (&figure.name, if best.len() == 1 { "It is" } else { "They are" });
     let mut found = vec![];
     if !beaten.is_empty() {
@@ -328,6 +341,10 @@ fn among_all(comparison: &Comparison, figure: &Figure, best: &[&Setting]) -> Str
     if !untold.is_empty() {
         let too = if found.is_empty() { "Too" } else { "too" };
         found.push(format!("{too} few trials to tell from {}", listed(&untold)));
+    }
+    if !valueless.is_empty() {
+        let not = if found.is_empty() { "Not" } else { "not" };
+        found.push(format!("{not} comparable with {}", listed(&valueless)));
     }
     let found = if found.is_empty() {
         String::new()

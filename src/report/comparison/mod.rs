@@ -12,7 +12,7 @@ use std::path::Path;
 
 use super::layout::Page;
 use super::number::count;
-use crate::metrics::comparison::Comparison;
+use crate::metrics::comparison::{Comparison, Verdict};
 use crate::text::{Style, shown};
 
 /// What the report of a comparison is made of.
@@ -82,7 +82,12 @@ pub(super) fn family(comparison: &Comparison) -> String {
         if family.tests == 1 { "" } else { "s" }
     )];
     if family.alike > 0 {
-        words.push(format!("without {} of what never differs", count(family.alike)));
+        let never = if has_gaps(comparison) {
+            "never differs or has no value"
+        } else {
+            "never differs"
+        };
+        words.push(format!("without {} of what {never}", count(family.alike)));
     }
     if family.impossible > 0 {
         words.push(format!(
@@ -91,4 +96,12 @@ pub(super) fn family(comparison: &Comparison) -> String {
         ));
     }
     words.join(", ")
+}
+
+/// Whether a setting has no value of something compared.
+fn has_gaps(comparison: &Comparison) -> bool {
+    comparison
+        .pairs
+        .iter()
+        .any(|pair| pair.verdict == Verdict::NotComparable)
 }

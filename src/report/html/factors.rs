@@ -124,10 +124,17 @@ fn by_levels(comparison: &Comparison, figure: &figures::Figure, interaction: &In
     let levels = [&across.levels[..], &lines.levels[..]];
     let title = format!("{} by {} and {}", capital(&figure.name), names[0], names[1]);
     let panels = match one_value(values.iter().flatten().flatten().copied()) {
-        Some(value) => vec![Panel::words(
-            "",
-            format!("The same everywhere: {}.", number::figure(value)),
-        )],
+        Some(value) => {
+            let everywhere = if values.iter().flatten().all(Option::is_some) {
+                "everywhere"
+            } else {
+                "wherever there is a value"
+            };
+            vec![Panel::words(
+                "",
+                format!("The same {everywhere}: {}.", number::figure(value)),
+            )]
+        }
         None => vec![
             plot_of_lines(figure, names, levels, &values),
             matrix::levels(

@@ -113,6 +113,63 @@ fn levels_that_look_like_numbers_are_drawn_all_of_them_and_compared_by_factors()
     assert!(!charts.iter().any(|(id, _)| id.starts_with("by-setting-bandwidth")));
 }
 
+/// Three robots that hear each other always, of which one crashes: it is found by timeouts, the sooner the shorter, and by nobody who
+/// does not look for it. What is sent is the same in any case.
+#[test]
+fn a_setting_without_a_detector_has_no_figure_of_one_and_is_compared_by_what_it_has() {
+    let dir = tempdir().unwrap();
+    let base = "Scenario(name: \"base\", time_limit: 30.0, swarm: (robots: 3, deploy: At([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])), \
+        protocol: Heartbeat, detector: Timeout(2.5), faults: [Crash(robots: [2], at: 15.0)])";
+    let study = "// Does a detector pay?\nStudy(name: \"none\", base: \"base.ron\", trials: 8, factors: [(name: \"detector\", \
+        paths: [\"detector\"], levels: [(label: \"nobody\", values: [None]), (label: \"short\", values: [Timeout(1.5)]), \
+        (label: \"long\", values: [Timeout(2.5)])])], figure: \"detection.detection_time_s\", \
+        also: [\"detection.query_accuracy\", \"delivery_ratio\"], pareto: (\"detection.detection_time_s\", \"delivery_ratio\"))";
+    fs::write(dir.path().join("base.ron"), base).unwrap();
+    fs::write(dir.path().join("study.ron"), study).unwrap();
+    let output = desim(dir.path(), &["compare", "study.ron"]).assert().success();
+    let printed = text(&output.get_output().stdout);
+    let results = dir.path().join("results/none");
+    let compared = comparison(&results);
+    assert_eq!(
+        compared["finding"].as_str().unwrap().split(". ").last(),
+        Some("It is detectably better than long; not comparable with nobody."),
+        "{printed}"
+    );
+    for setting in compared["settings"].as_array().unwrap() {
+        let looks = setting["name"] != "nobody";
+        for (key, figure) in setting["figures"].as_object().unwrap() {
+            // Nobody is ever mistaken, so that no mistake has a duration.
+            let always = matches!(key.as_str(), "detection.detection_time_s" | "detection.query_accuracy");
+            if key.starts_with("detection.") && (always || !looks) {
+                assert_eq!(figure["value"].is_number(), looks, "{key}: {figure}");
+                assert_eq!(figure["ci95"][0].is_number(), looks, "{key}: {figure}");
+            }
+        }
+    }
+    for pair in compared["pairs"].as_array().unwrap() {
+        let with_nobody = [&pair["setting"], &pair["against"]]
+            .iter()
+            .any(|name| *name == "nobody");
+        let of_detectors = pair["figure"] != "delivery_ratio";
+        let is_compared = pair["verdict"] != "not_comparable";
+        assert_eq!(is_compared, !(with_nobody && of_detectors), "{pair}");
+        assert_eq!(
+            !is_compared,
+            pair["words"].as_str().unwrap().contains("cannot be compared"),
+            "{pair}"
+        );
+    }
+    let points = compared["pareto"]["points"].as_array().unwrap();
+    assert!(points.iter().all(|point| point["setting"] != "nobody"), "{points:?}");
+    desim(dir.path(), &["report", "results/none"]).assert().success();
+    let page = fs::read_to_string(results.join("report.html")).unwrap();
+    assert!(page.contains("not comparable with nobody") && !page.contains(">NaN<"));
+    let alone = desim(dir.path(), &["report", "results/none/nobody"]).assert().success();
+    let alone = text(&alone.get_output().stdout);
+    assert!(alone.contains("none: robots ran no failure detector"), "{alone}");
+    assert!(!alone.contains("mistake"), "{alone}");
+}
+
 #[test]
 fn every_axis_of_names_is_one_whatever_the_names_and_no_two_settings_share_a_line() {
     let (_dir, _, page, compared) = finished("names");

@@ -130,7 +130,7 @@ fn the_report_of_a_study_without_a_reference_that_added_trials() {
     insta::assert_snapshot!(shown(&made_up(None, Some(stopping)), Style::PLAIN));
 }
 
-/// Four settings whose accuracies are these in each of twelve trials, described.
+/// Four settings whose accuracies are about these in each of twelve trials, described; one that is not a number is of trials that have none.
 fn told(accuracies: [f64; 4], reference: Option<usize>) -> Comparison {
     let design = Design {
         study: "made-up".into(),
@@ -156,7 +156,11 @@ fn told(accuracies: [f64; 4], reference: Option<usize>) -> Comparison {
             samples: vec![
                 (0..12)
                     .map(|trial| Sample {
-                        part: [accuracy + f64::from(trial % 3) / 100.0, 1.0],
+                        part: if accuracy.is_nan() {
+                            [0.0; 2]
+                        } else {
+                            [accuracy + f64::from(trial % 3) / 100.0, 1.0]
+                        },
                         ..Sample::default()
                     })
                     .collect(),
@@ -196,6 +200,97 @@ fn of_equal_settings_none_is_called_the_highest_the_best_or_the_worst() {
         "{against}"
     );
     assert!(against.contains("a; d are worst"), "{against}");
+}
+
+#[test]
+fn a_setting_without_a_value_is_neither_like_the_others_nor_one_to_hold_them_against() {
+    let none = f64::NAN;
+    let among = told([none, 0.3, 0.9, 0.3], None).finding;
+    assert!(among.starts_with("c has the highest query accuracy: 0.91"), "{among}");
+    assert!(
+        among.contains("It is detectably better than b; d; not comparable with a."),
+        "{among}"
+    );
+    let against = told([none, 0.3, 0.9, 0.3], Some(1)).finding;
+    assert!(
+        against.contains("1 is better, 0 worse, 1 the same in every trial, 1 cannot be compared, and 0 show no"),
+        "{against}"
+    );
+    let nothing = told([none, 0.3, 0.9, 0.3], Some(0)).finding;
+    assert!(
+        nothing
+            .starts_with("a has no value of query accuracy, so that nothing can be held against it. c has the highest"),
+        "{nothing}"
+    );
+    let report = shown(&told([none, 0.3, 0.9, 0.3], Some(1)), Style::PLAIN);
+    let report = report.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        report.contains("1 test, without 2 of what never differs or has no value"),
+        "{report}"
+    );
+}
+
+/// A detector or none by two losses: of none, no accuracy; of the others the same in each of eight trials.
+fn with_and_without_a_detector(reference: Option<usize>) -> Comparison {
+    let factor = |name: &str, levels: &[&str]| Factor {
+        name: name.into(),
+        levels: levels.iter().map(|&level| level.into()).collect(),
+    };
+    let factors = vec![
+        factor("detector", &["none", "short", "long"]),
+        factor("loss", &["0", "1"]),
+    ];
+    let design = Design {
+        study: "made-up".into(),
+        question: None,
+        compared: vec![0],
+        figures: vec![figure("accuracy", "query accuracy", "1", Better::Higher, false)],
+        reference,
+        relevant: 0.05,
+        pareto: None,
+        factors: factors.clone(),
+    };
+    let cells = factors[0]
+        .levels
+        .iter()
+        .flat_map(|detector| factors[1].levels.iter().map(move |loss| [detector, loss]));
+    let sample = |watched: f64, trial: u32| Sample {
+        part: [watched * (0.5 + f64::from(trial % 3) / 100.0), watched],
+        ..Sample::default()
+    };
+    let settings = cells.map(|levels| Trials {
+        name: levels.map(String::as_str).join("_"),
+        label: levels.map(String::as_str).join(", "),
+        levels: levels.map(String::clone).to_vec(),
+        seed: 1,
+        samples: vec![
+            (0..8)
+                .map(|trial| sample(f64::from(levels[0] != "none"), trial))
+                .collect(),
+        ],
+    });
+    let mut compared = Comparison::of(&design, &settings.collect::<Vec<_>>(), None);
+    describe(&mut compared);
+    compared
+}
+
+#[test]
+fn of_a_factor_that_was_never_compared_it_is_not_said_that_it_has_no_effect() {
+    let finding = with_and_without_a_detector(Some(0)).finding;
+    assert!(
+        finding.ends_with("Nothing can be averaged over the others, for a setting has no value."),
+        "{finding}"
+    );
+    assert!(!finding.contains("no factor shows"), "{finding}");
+    let finding = with_and_without_a_detector(None).finding;
+    assert!(
+        finding
+            .ends_with("no factor shows a detectable effect. Of loss nothing can be said, for a setting has no value."),
+        "{finding}"
+    );
+    let page = study_page(&with_and_without_a_detector(None), "desim 9.9");
+    assert!(page.contains("The same wherever there is a value: 0.509"));
+    assert!(!page.contains("The same everywhere"));
 }
 
 #[test]

@@ -157,3 +157,18 @@ fn whoever_is_not_heard_at_all_counts_as_out_of_range() {
     let after = suspicion.at.since(suspicion.heard).as_secs();
     assert!((after - 6.0).abs() < 1e-9, "{after}");
 }
+
+/// A status a second: of a silence no more can have been missed than the seconds in it and one, though twice as many probes and answers
+/// were lost meanwhile.
+#[test]
+fn a_suspicion_counts_the_statuses_that_were_missed_and_no_probe() {
+    let record = heartbeats("Swim(suspicion_mult: 1.0)", "Bernoulli(0.7)", 1.0, 60.0, "");
+    let suspicions = &record.detection.suspicions;
+    assert!(suspicions.len() > 20, "{}", suspicions.len());
+    for suspicion in suspicions {
+        let missed = &suspicion.missed;
+        let missed = missed.lost.iter().sum::<u32>() + missed.under_way + missed.out_of_range;
+        let sent = suspicion.at.since(suspicion.heard).as_secs().floor() + 1.0;
+        assert!(f64::from(missed) <= sent, "{suspicion:?}");
+    }
+}

@@ -139,3 +139,78 @@ fn robots_that_say_the_same_refresh_it_at_different_times_and_together_only_wher
     );
     assert!(first_silences(PhaseConfig::Random).len() > 4);
 }
+
+/// A mission all of whose topics have a turn every 0.8 s, 8 steps, and are refreshed every 6.4 s, 8 turns.
+fn mission_in_eighths(phase: PhaseConfig) -> Rc<Mission> {
+    let topic = "interval: 0.8, send: OnChange(max_interval: 6.4)";
+    let settings = format!("(status: ({topic}), strand: ({topic}), request: (interval: 0.8), relay: (interval: 0.8))");
+    let control = ControlConfig {
+        phase,
+        ..ControlConfig::default()
+    };
+    let config = ron::from_str("(targets: Ring(count: 1, radius: 4.5))").unwrap();
+    let poses = vec![Pose::default(); 40];
+    let (detector, streams) = (DetectorConfig::default(), Streams::new(3, 0));
+    let robots = swarm(&config, &gossip(&settings), &detector, &control, &poses, streams);
+    Rc::clone(&robots[0].known.mission)
+}
+
+/// That some two of 40 robots begin at none of 8 steps, or that two topics begin together in all of them, is as good as impossible:
+/// a step is left out by all with probability (7/8)^40 = 0.005, four of them by less than 1e-7.
+fn assert_spread(begin: impl Fn(u32) -> [u64; 4], topics: usize) {
+    let by_robot: Vec<[u64; 4]> = (0..40).map(begin).collect();
+    for topic in 0..topics {
+        let steps: std::collections::BTreeSet<u64> = by_robot.iter().map(|steps| steps[topic]).collect();
+        assert!(steps.len() > 4, "topic {topic}: {by_robot:?}");
+        for other in 0..topic {
+            assert!(
+                by_robot.iter().any(|steps| steps[topic] != steps[other]),
+                "{topic} goes with {other}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_topic_of_a_robot_begins_at_a_step_of_its_own_and_together_only_where_asked() {
+    let begin = |mission: &Mission, robot: u32| {
+        let parameters = &mission.parameters;
+        let topics = [
+            parameters.status_turns,
+            parameters.strand_turns,
+            parameters.request_turns,
+            parameters.relay_turns,
+        ];
+        topics.map(|turns| (0..8).find(|&step| turns.is_due(ActorId(robot), step)).unwrap())
+    };
+    let random = mission_in_eighths(PhaseConfig::Random);
+    assert_spread(|robot| begin(&random, robot), 4);
+    let together = mission_in_eighths(PhaseConfig::Together);
+    assert!((0..40).all(|robot| begin(&together, robot) == [0; 4]));
+}
+
+#[test]
+fn what_a_robot_says_of_its_strands_is_refreshed_at_a_turn_of_its_own_and_apart_from_its_status() {
+    let begin = |mission: &Mission, robot: u32| {
+        let parameters = &mission.parameters;
+        let mut said = Said::nothing(ActorId(robot), parameters);
+        let Message::Status(word) = status(Role::Free, false, 0) else {
+            panic!("a status")
+        };
+        // Said at the first turn, and then refreshed.
+        let first = |due: &mut dyn FnMut() -> bool| {
+            assert!(due());
+            (1..=8).find(|_| due()).unwrap()
+        };
+        [
+            first(&mut || said.status.is_due(parameters.status_repetition, &word)),
+            first(&mut || said.strands.is_due(parameters.strand_repetition, &Vec::new())),
+            0,
+            0,
+        ]
+    };
+    let random = mission_in_eighths(PhaseConfig::Random);
+    assert_spread(|robot| begin(&random, robot), 2);
+    let together = mission_in_eighths(PhaseConfig::Together);
+    assert!((0..40).all(|robot| begin(&together, robot) == [8, 8, 0, 0]));
+}
