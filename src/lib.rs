@@ -14,7 +14,7 @@
 //! # Assemble and run
 //!
 //! [`simulation::Setup`] is the world: arena, motion, radio, what is measured. Here two robots of the shipped
-//! [`heartbeat`](protocol::heartbeat) protocol stand a metre apart on a radio that loses half of what is said:
+//! [`heartbeat`](kinds::heartbeat) protocol stand a metre apart on a radio that loses half of what is said:
 //!
 //! ```
 //! use std::rc::Rc;
@@ -22,7 +22,7 @@
 //! use desim::engine::{ActorId, Span};
 //! use desim::geometry::{Pose, Vec2};
 //! use desim::protocol::control::PhaseConfig;
-//! use desim::protocol::heartbeat::{Heartbeat, Settings};
+//! use desim::kinds::heartbeat::{Heartbeat, Settings};
 //! use desim::quantity::Probability;
 //! use desim::radio::LossConfig;
 //! use desim::simulation::{DriverKind, Setup};
@@ -65,8 +65,8 @@
 //!
 //! # The floors
 //!
-//! [`engine`], [`geometry`], [`quantity`] and [`text`] know no robots; [`radio`], [`motion`], [`protocol`] and [`faults`] are pure models that do
-//! not know each other; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
+//! [`engine`], [`geometry`], [`quantity`], [`statistics`] and [`text`] know no robots; [`radio`], [`motion`], [`protocol`] and [`faults`] are pure
+//! models that do not know each other; [`kinds`] are protocols; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
 //! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
 
 pub mod cli;
@@ -75,6 +75,7 @@ pub mod experiment;
 pub mod export;
 pub mod faults;
 pub mod geometry;
+pub mod kinds;
 pub mod metrics;
 pub mod motion;
 pub mod predict;
@@ -84,4 +85,5 @@ pub mod radio;
 pub mod report;
 pub mod scenario;
 pub mod simulation;
+pub mod statistics;
 pub mod text;

@@ -3,12 +3,12 @@
 use std::rc::Rc;
 
 use desim::engine::{ActorId, Span, Streams};
+use desim::kinds::heartbeat::{Heartbeat, Settings};
 use desim::metrics::MetricsConfig;
 use desim::motion::MotionConfig;
 use desim::protocol::control::{ControlConfig, PhaseConfig};
 use desim::protocol::detector::DetectorConfig;
 use desim::protocol::gossip::GossipConfig;
-use desim::protocol::heartbeat::{Heartbeat, Settings};
 use desim::quantity::{NonNegative, Positive, Probability};
 use desim::radio::{LatencyConfig, LossConfig, RadioConfig};
 use desim::simulation::{DriverKind, Setup};

@@ -126,9 +126,9 @@ fn entry(part: &FinishedTrial) -> TrialEntry {
 /// What the scenario's protocol calls its topics and roles.
 fn names(scenario: &Scenario) -> Names {
     match &scenario.protocol {
-        ProtocolConfig::Backbone(_) => Names::of::<crate::protocol::backbone::Backbone>(&scenario.detector),
-        ProtocolConfig::Heartbeat => Names::of::<crate::protocol::heartbeat::Heartbeat>(&scenario.detector),
-        ProtocolConfig::Rumor(_) => Names::of::<crate::protocol::rumor::Rumor>(&scenario.detector),
+        ProtocolConfig::Backbone(_) => Names::of::<crate::kinds::backbone::Backbone>(&scenario.detector),
+        ProtocolConfig::Heartbeat => Names::of::<crate::kinds::heartbeat::Heartbeat>(&scenario.detector),
+        ProtocolConfig::Rumor(_) => Names::of::<crate::kinds::rumor::Rumor>(&scenario.detector),
     }
 }
 

@@ -10,13 +10,13 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 
 use super::record::{TrafficRow, TrialRecord};
-use super::statistics::{Estimate, Estimator, Lasting, Observation, Part, gini, mean, pseudo_values, quantile};
 use super::summary::detection::{detection_times, mistake_durations, mistakes};
 use super::summary::faults::mending;
 use super::summary::frames::delivery;
 use super::summary::spread::{duplicates, informed_ratio};
 use super::summary::{DIMENSIONLESS, SECONDS, STEPS, Unit, completion};
 use crate::engine::Span;
+use crate::statistics::{Estimate, Estimator, Lasting, Observation, Part, gini, mean, pseudo_values, quantile};
 
 /// Key of the steps until a mission is complete.
 pub const COMPLETION: &str = "steps_to_completion";

@@ -15,10 +15,10 @@ mod recorder;
 mod reports;
 mod series;
 mod spread;
-pub mod statistics;
 pub mod summary;
 mod traffic;
 
+pub use crate::statistics::Estimate;
 pub use completion::Progress;
 pub use config::MetricsConfig;
 pub use connectivity::{Chains, Graph};
@@ -30,6 +30,5 @@ pub use record::{
 };
 pub use recorder::{Layout, Recorder, RunEnd};
 pub use spread::RumorSpread;
-pub use statistics::Estimate;
 pub use summary::Summary;
 pub use traffic::HeaderBytes;

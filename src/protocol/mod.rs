@@ -14,14 +14,11 @@ use crate::engine::{ActorId, Process, SimTime};
 use crate::geometry::{Pose, Vec2};
 use detector::DetectorConfig;
 
-pub mod backbone;
 mod completion;
 pub mod control;
 pub mod detector;
 pub mod gossip;
-pub mod heartbeat;
-mod robot_table;
-pub mod rumor;
+pub mod robot_table;
 pub mod wander;
 
 pub use completion::CompletionConfig;

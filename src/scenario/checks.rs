@@ -2,10 +2,10 @@
 
 use crate::engine::Span;
 use crate::faults;
+use crate::kinds::backbone::Backbone;
+use crate::kinds::heartbeat::Heartbeat;
+use crate::kinds::rumor::Rumor;
 use crate::protocol::Protocol as _;
-use crate::protocol::backbone::Backbone;
-use crate::protocol::heartbeat::Heartbeat;
-use crate::protocol::rumor::Rumor;
 use crate::quantity::Positive;
 
 use super::path::FieldPath;

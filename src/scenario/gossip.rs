@@ -1,7 +1,7 @@
 //! What is wrong between gossip settings and what they are for: the protocol, its timeouts, its failure detector.
 
 use crate::engine::Span;
-use crate::protocol::backbone::BackboneConfig;
+use crate::kinds::backbone::BackboneConfig;
 use crate::protocol::gossip::{
     FanOutConfig, GossipConfig, RelayConfig, RequestConfig, RetransmitConfig, SendConfig, StrandConfig,
     TimeToLiveConfig, Timing, TopicConfig,

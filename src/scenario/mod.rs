@@ -43,14 +43,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::Span;
 use crate::faults::FaultConfig;
+use crate::kinds::backbone::{Backbone, BackboneConfig};
+use crate::kinds::heartbeat::Heartbeat;
+use crate::kinds::rumor::{Rumor, RumorConfig};
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig, Site};
-use crate::protocol::backbone::{Backbone, BackboneConfig};
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
-use crate::protocol::heartbeat::Heartbeat;
-use crate::protocol::rumor::{Rumor, RumorConfig};
 use crate::protocol::wander::WanderConfig;
 use crate::protocol::{CompletionConfig, Protocol as _};
 use crate::quantity::Positive;

@@ -9,12 +9,12 @@ use super::error::RunError;
 use super::setup::{DriverKind, Setup};
 use crate::engine::{ActorId, Span, Streams};
 use crate::geometry::Vec2;
+use crate::kinds::backbone::{self, BackboneConfig};
+use crate::kinds::heartbeat::{Heartbeat, Settings};
+use crate::kinds::rumor;
 use crate::metrics::{Mission, MissionTarget, TrialRecord};
 use crate::motion::{DeployError, deploy};
-use crate::protocol::backbone::{self, BackboneConfig};
 use crate::protocol::detector::Probe;
-use crate::protocol::heartbeat::{Heartbeat, Settings};
-use crate::protocol::rumor;
 use crate::protocol::wander::Ground;
 use crate::scenario::{ProtocolConfig, Scenario};
 

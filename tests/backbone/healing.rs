@@ -4,9 +4,9 @@ use std::path::Path;
 
 use desim::engine::{ActorId, SimTime, Span};
 use desim::geometry::Vec2;
+use desim::kinds::backbone::Role;
 use desim::metrics::detection::{Suspicion, Verdict};
 use desim::metrics::{Outcome, RobotState, TrialRecord};
-use desim::protocol::backbone::Role;
 use desim::scenario::{Override, Scenario, load};
 use desim::simulation::{DriverKind, run_trial};
 use proptest::prelude::*;

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use desim::geometry::Vec2;
+use desim::kinds::backbone::Role;
 use desim::metrics::{Outcome, RobotState, TrialRecord};
-use desim::protocol::backbone::Role;
 use desim::scenario::{Override, load};
 use desim::simulation::{DriverKind, run_trial};
 use tokio_util::sync::CancellationToken;

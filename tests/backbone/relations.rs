@@ -7,9 +7,9 @@ use std::path::Path;
 use std::rc::Rc;
 
 use desim::engine::{ActorId, SimTime, Span};
+use desim::kinds::backbone::{self, Backbone, BackboneCodec, Message, Request, Role};
 use desim::metrics::{FaultKind, TrialRecord};
 use desim::motion::deploy;
-use desim::protocol::backbone::{self, Backbone, BackboneCodec, Message, Request, Role};
 use desim::protocol::{Input, Note, Output, Protocol, Topic, Wake};
 use desim::scenario::{Override, ProtocolConfig, Scenario, load};
 use desim::simulation::{DriverKind, Setup};

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use desim::cli::check::{Say, check};
+use desim::kinds::backbone::TargetsConfig;
 use desim::protocol::CompletionConfig;
-use desim::protocol::backbone::TargetsConfig;
 use desim::radio::{LatencyConfig, LossConfig};
 use desim::scenario::{
     Override, ProtocolConfig, Report, Scenario, Style, examine, json_schema, load, parse, question, to_ron,

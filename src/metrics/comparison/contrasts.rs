@@ -2,7 +2,7 @@
 //! levels against each other over all of those.
 
 use super::Factor;
-use crate::metrics::statistics::{fewest_trials, least_of_groups, least_of_pairs};
+use crate::statistics::{fewest_trials, least_of_groups, least_of_pairs};
 
 /// What a study holds against what, in each figure that it compares.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::contrasts::{Grid, Levels};
 use super::{Design, Trials, Verdict};
-use crate::metrics::statistics::{
+use crate::statistics::{
     Estimate, Estimator, Part, Tested, difference, paired_permutation, ratio_of_sums, sign_permutation,
 };
 

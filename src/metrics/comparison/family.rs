@@ -6,7 +6,7 @@ use super::contrasts::Contrasts;
 use super::effect::{Dependence, Effect, Interaction, LevelMean, Parts};
 use super::pair::{Pair, differ, gain_of};
 use super::{Design, SIGNIFICANT, Trials};
-use crate::metrics::statistics::{Tested, fewest_trials, holm, least_of_groups, least_of_pairs, testable};
+use crate::statistics::{Tested, fewest_trials, holm, least_of_groups, least_of_pairs, testable};
 
 /// What to make of a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::setting::observations;
 use super::{Design, Trials, Verdict};
 use crate::metrics::figures::{Better, COMPLETION, Sample, parts};
-use crate::metrics::statistics::{
+use crate::statistics::{
     Estimate, POWER, Part, Tested, cliffs_delta_estimate, difference, least_of_ranks, log_rank, mann_whitney,
     paired_permutation, ratio_of_sums, trials_needed, wilcoxon,
 };

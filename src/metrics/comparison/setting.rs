@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Design, Trials, by_key};
 use crate::metrics::figures::{COMPLETION, Sample};
-use crate::metrics::statistics::{Estimate, Observation, Step, median, median_survival, survival_curve};
 use crate::metrics::summary::Named;
+use crate::statistics::{Estimate, Observation, Step, median, median_survival, survival_curve};
 
 /// What the trials of one setting tell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,7 +6,7 @@ use rand_philox::Philox;
 use super::*;
 use crate::engine::{Purpose, Streams};
 use crate::metrics::figures::Better;
-use crate::metrics::statistics::Estimator;
+use crate::statistics::Estimator;
 
 pub(super) fn figure(key: &str, better: Better, is_ratio: bool) -> Figure {
     Figure {

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::record::{TrafficRow, TrialRecord, Volume};
-use crate::metrics::statistics::{Estimate, mean, quantile};
+use crate::statistics::{Estimate, mean, quantile};
 
 use super::Figures;
 use super::quantity::{DIMENSIONLESS, Named, Quantity, Unit};

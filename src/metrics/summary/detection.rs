@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Suspicion, Verdict};
-use crate::metrics::statistics::Observation;
+use crate::statistics::Observation;
 
 use super::Figures;
 use super::quantity::{DIMENSIONLESS, Lasted, Measured, Named, Quantity, Unit};

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::SimTime;
 use crate::metrics::record::{FaultKind, HealingEpisode, TrialRecord};
-use crate::metrics::statistics::{Estimate, Estimator, Observation, Part, median_survival, pseudo_values};
+use crate::statistics::{Estimate, Estimator, Observation, Part, median_survival, pseudo_values};
 
 use super::quantity::{Lasted, Measured, Named, Unit};
 use super::{SECONDS, mean_count};

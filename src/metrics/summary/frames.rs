@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::record::{TopicFates, TrialRecord};
-use crate::metrics::statistics::Part;
 use crate::radio::LossCause;
+use crate::statistics::Part;
 
 use super::quantity::{Named, Unit};
 

@@ -26,7 +26,7 @@ use crate::engine::Span;
 use super::figures::Registry;
 use super::latency::LatencyHistogram;
 use super::record::{Outcome, TrialRecord};
-use super::statistics::{Estimate, Estimator, Observation, median_survival};
+use crate::statistics::{Estimate, Estimator, Observation, median_survival};
 pub(super) use quantity::DIMENSIONLESS;
 
 pub(super) const STEPS: &str = "control steps";

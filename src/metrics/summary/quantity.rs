@@ -7,7 +7,7 @@ use std::marker::PhantomData;
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::metrics::statistics::Estimate;
+use crate::statistics::Estimate;
 
 /// Name of a unit.
 pub type Unit = Cow<'static, str>;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::SimTime;
 use crate::metrics::record::{TrafficRow, TrialRecord};
-use crate::metrics::statistics::{Estimate, Estimator, Observation, Part, median_survival};
+use crate::statistics::{Estimate, Estimator, Observation, Part, median_survival};
 
 use super::quantity::{DIMENSIONLESS, Measured, Named, Unit};
 use super::{Figures, SECONDS};

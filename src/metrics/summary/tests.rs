@@ -142,10 +142,7 @@ fn topics_and_roles_add_up_to_the_whole() {
 fn outcomes_delivery_and_connectivity_are_estimates_over_trials() {
     let summary = summary();
     assert_eq!((summary.trials, summary.completed), (2, 1));
-    assert_eq!(
-        summary.completion_ratio.estimate,
-        super::super::statistics::proportion(1, 2)
-    );
+    assert_eq!(summary.completion_ratio.estimate, crate::statistics::proportion(1, 2));
     assert_eq!(
         summary.steps_to_completion.median.value,
         Some(8.5),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::engine::SimTime;
 use crate::metrics::TrialRecord;
-use crate::metrics::statistics::{Observation, quantile, survival_curve};
+use crate::statistics::{Observation, quantile, survival_curve};
 
 /// Points that a line is made of at most.
 const MOST_POINTS: usize = 300;

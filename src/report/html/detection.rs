@@ -11,10 +11,10 @@ use super::figure::{Figure, Panel};
 use super::names::Names;
 use super::table::DataTable;
 use crate::metrics::detection::{Cause, DetectionRecord, Verdict};
-use crate::metrics::statistics::{Estimate, Observation};
 use crate::metrics::summary::{Lasted, detection_times, mistake_durations};
 use crate::protocol::detector::DetectorConfig;
 use crate::report::number;
+use crate::statistics::{Estimate, Observation};
 
 /// Suspicions by verdict and cause.
 pub fn suspicions(input: &PageInput) -> Option<Figure> {

@@ -10,10 +10,10 @@ use super::figure::{Figure, HEIGHT, Panel};
 use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::comparison::{Comparison, Setting, Survival};
-use crate::metrics::statistics::{Observation, Step, survival_curve};
 use crate::metrics::{HealingEpisode, Outcome};
 use crate::report::missed::{self, Asked};
 use crate::report::number;
+use crate::statistics::{Observation, Step, survival_curve};
 
 const COLOUR: &str = "#0072b2";
 /// More curves than this are drawn without their bands, which would cover each other.

@@ -11,8 +11,8 @@ use super::data::Spread;
 use super::figure::{Figure, Panel};
 use super::table::DataTable;
 use crate::metrics::TrialRecord;
-use crate::metrics::statistics::{gini, quantile};
 use crate::report::number;
+use crate::statistics::{gini, quantile};
 
 /// Above this many robots, one mark each would hide the others.
 const MOST_ROBOTS: usize = 250;

@@ -1,9 +1,9 @@
 //! Missions that cannot be accomplished, or only by chance.
 
 use crate::geometry::Vec2;
+use crate::kinds::backbone::{BackboneConfig, TargetsConfig};
 use crate::motion::{DeployConfig, Reach, reach};
 use crate::protocol::CompletionConfig;
-use crate::protocol::backbone::{BackboneConfig, TargetsConfig};
 use crate::scenario::checks::Problem;
 use crate::scenario::{ProtocolConfig, Scenario};
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use desim::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials};
 use desim::metrics::figures::{Better, COMPLETION, Figure, Sample};
-use desim::metrics::statistics::Estimator;
 use desim::report::{ComparisonInput, comparison, describe, study_page};
+use desim::statistics::Estimator;
 use desim::text::{Style, columns};
 
 fn figure(key: &str, name: &str, unit: &'static str, better: Better, is_ratio: bool) -> Figure {

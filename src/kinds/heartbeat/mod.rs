@@ -10,12 +10,12 @@ use std::rc::Rc;
 use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
-use super::control::{ControlConfig, Phases, Rhythm};
-use super::detector::{Carried, Circumstances, Detector, DetectorConfig, Monitored, Probe, Sign};
-use super::gossip::{GossipConfig, Turns};
-use super::wander::{Ground, Wander};
-use super::{CodecError, Input, Output, Protocol, Topic, Wake};
 use crate::engine::{ActorId, SimTime, Streams};
+use crate::protocol::control::{ControlConfig, Phases, Rhythm};
+use crate::protocol::detector::{Carried, Circumstances, Detector, DetectorConfig, Monitored, Probe, Sign};
+use crate::protocol::gossip::{GossipConfig, Turns};
+use crate::protocol::wander::{Ground, Wander};
+use crate::protocol::{CodecError, Input, Output, Protocol, Topic, Wake};
 
 /// Settings that all robots share.
 #[derive(Debug)]

@@ -42,12 +42,12 @@ use sidestep::Sidestep;
 use view::{Knowledge, View};
 use worker::Worker;
 
-use super::control::{ControlConfig, Rhythm};
-use super::detector::{self, Circumstances, Detector, DetectorConfig};
-use super::gossip::{GossipConfig, Repeat};
-use super::{Input, Note, Output, Protocol, Reception, Topic, Wake};
 use crate::engine::{ActorId, SimTime, Streams};
 use crate::geometry::{Pose, Vec2};
+use crate::protocol::control::{ControlConfig, Rhythm};
+use crate::protocol::detector::{self, Circumstances, Detector, DetectorConfig};
+use crate::protocol::gossip::{GossipConfig, Repeat};
+use crate::protocol::{Input, Note, Output, Protocol, Reception, Topic, Wake};
 
 /// One robot of the backbone.
 #[derive(Debug)]

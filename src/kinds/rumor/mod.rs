@@ -18,11 +18,11 @@ use std::rc::Rc;
 pub use config::{Mode, RoundsConfig, RumorConfig, SourcesConfig};
 pub use message::{Message, RumorCodec};
 
-use super::control::{ControlConfig, Phases, Rhythm};
-use super::gossip::{FanOutConfig, GossipConfig, Turns};
-use super::wander::{Ground, Wander};
-use super::{Input, Note, Output, Protocol, Reception, Role, TimerId, Topic, Wake};
 use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
+use crate::protocol::control::{ControlConfig, Phases, Rhythm};
+use crate::protocol::gossip::{FanOutConfig, GossipConfig, Turns};
+use crate::protocol::wander::{Ground, Wander};
+use crate::protocol::{Input, Note, Output, Protocol, Reception, Role, TimerId, Topic, Wake};
 
 /// Whom a robot addresses, by robot and round: a word a peer.
 const PEERS: Purpose = Purpose::new("rumor.peers");
