@@ -224,7 +224,8 @@ fn is_own(name: &str) -> bool {
         let is_number = |number: &str| !number.is_empty() && number.bytes().all(|digit| digit.is_ascii_digit());
         PICTURES.iter().filter_map(|kind| number(kind)).any(is_number)
     };
-    [MANIFEST, SUMMARY, PAGE].contains(&name) || Tables::FILES.contains(&name) || is_picture()
+    let is_table = Tables::FILES.contains(&name) || Tables::OPTIONAL.contains(&name);
+    [MANIFEST, SUMMARY, PAGE].contains(&name) || is_table || is_picture()
 }
 
 /// Holds the page of charts in `dir`, if there is one, against what was written.

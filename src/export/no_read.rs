@@ -16,6 +16,9 @@ pub struct NameLists {
 /// Names of the tables that are read: one, to say that it cannot be.
 pub const READ: [&str; 1] = ["trials.parquet"];
 
+/// Names of tables that may be there: none.
+pub const OPTIONAL: [&str; 0] = [];
+
 /// Nothing.
 ///
 /// # Errors

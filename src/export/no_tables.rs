@@ -12,6 +12,8 @@ pub struct Tables;
 impl Tables {
     /// Names of the files: none.
     pub const FILES: [&str; 0] = [];
+    /// Names of files that may be there: none.
+    pub const OPTIONAL: [&str; 0] = [];
 
     /// Starts nothing.
     ///
@@ -33,7 +35,7 @@ impl Tables {
     ///
     /// # Errors
     /// Never.
-    pub fn finish(self) -> io::Result<()> {
-        Ok(())
+    pub fn finish(self) -> io::Result<Vec<&'static str>> {
+        Ok(Vec::new())
     }
 }

@@ -67,7 +67,9 @@ impl Results {
         if !manifest.finished {
             return Err(ResultsError::Unfinished(dir.to_owned()));
         }
-        let wanted: Vec<&str> = read::READ.into_iter().chain([SUMMARY]).collect();
+        let there = |name: &&str| manifest.files.contains_key(*name);
+        let optional = read::OPTIONAL.into_iter().filter(there);
+        let wanted: Vec<&str> = read::READ.into_iter().chain([SUMMARY]).chain(optional).collect();
         let mut files = folder.held(&manifest, &wanted)?;
         let version = |file: &str, reason: String| FolderError::version(&dir.join(file), &reason, &manifest.version);
         let summary = files.remove(SUMMARY).unwrap_or_default();

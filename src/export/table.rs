@@ -42,6 +42,8 @@ enum Value<R> {
     Text(Get<R, Cow<'static, str>>),
     OptionalText(Get<R, Option<Cow<'static, str>>>),
     ListOfIds(Get<R, Vec<u32>>),
+    ListOfF64(Get<R, Vec<f64>>),
+    ListOfCounts(Get<R, Vec<u64>>),
 }
 
 /// Declares a constructor of [`Column`] for each type of value.
@@ -81,6 +83,10 @@ constructors! {
     optional_text, OptionalText, Option<Cow<'static, str>>;
     /// Lists of small numbers.
     list_of_ids, ListOfIds, Vec<u32>;
+    /// Lists of double-precision numbers.
+    list_of_f64, ListOfF64, Vec<f64>;
+    /// Lists of counts.
+    list_of_counts, ListOfCounts, Vec<u64>;
 }
 
 /// A Parquet file being written.
@@ -181,8 +187,13 @@ impl<R> Column<R> {
                 Repetition::OPTIONAL,
                 Some(LogicalType::String),
             ),
-            Value::ListOfIds(_) => {
-                let element = leaf("element", Physical::INT32, Repetition::REQUIRED, None)?;
+            Value::ListOfIds(_) | Value::ListOfF64(_) | Value::ListOfCounts(_) => {
+                let physical = match self.value {
+                    Value::ListOfF64(_) => Physical::DOUBLE,
+                    Value::ListOfCounts(_) => Physical::INT64,
+                    _ => Physical::INT32,
+                };
+                let element = leaf("element", physical, Repetition::REQUIRED, None)?;
                 let list = Type::group_type_builder("list").with_repetition(Repetition::REPEATED);
                 let list = list.with_fields(vec![element]).build()?;
                 let outer = Type::group_type_builder(name).with_repetition(Repetition::REQUIRED);
@@ -213,6 +224,11 @@ impl<R> Column<R> {
             Value::Text(get) => required::<ByteArrayType, _>(group, rows.iter().map(|row| text(get(row)))),
             Value::OptionalText(get) => optional::<ByteArrayType, _>(group, rows.iter().map(|row| get(row).map(text))),
             Value::ListOfIds(get) => list::<Int32Type, _>(group, rows.iter().map(|row| signed(get(row)))),
+            Value::ListOfF64(get) => list::<DoubleType, _>(group, rows.iter().map(get)),
+            Value::ListOfCounts(get) => {
+                let signed = |row| get(row).into_iter().map(u64::cast_signed).collect();
+                list::<Int64Type, _>(group, rows.iter().map(signed))
+            }
         }
     }
 }

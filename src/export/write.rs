@@ -69,7 +69,7 @@ pub fn write(
         finished: true,
         ..declared
     };
-    let mut files: Vec<String> = Tables::FILES.map(str::to_owned).into();
+    let mut files: Vec<String> = Vec::new();
     let mut tables = Tables::create(parts.dir(), names, scene.targets.len()).map_err(failed("write", parts.dir()))?;
     let mut records = Vec::new();
     for trial in 0..scenario.trials {
@@ -85,7 +85,8 @@ pub fn write(
             ..part.record
         });
     }
-    tables.finish().map_err(failed("write", parts.dir()))?;
+    let tables = tables.finish().map_err(failed("write", parts.dir()))?;
+    files.extend(tables.into_iter().map(str::to_owned));
     let summary = Summary::of(&scenario.name, names.topics, names.roles, &records);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());

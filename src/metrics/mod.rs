@@ -10,6 +10,7 @@ pub mod figures;
 mod healing;
 mod latency;
 mod mission;
+mod noted;
 mod record;
 mod recorder;
 mod reports;
@@ -24,6 +25,7 @@ pub use config::MetricsConfig;
 pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget};
+pub use noted::{Amount, Noted, Values};
 pub use record::{
     ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotBytes, RobotState, SeriesEntry,
     TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Volume,

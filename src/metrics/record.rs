@@ -11,6 +11,7 @@ use crate::radio::LossCause;
 
 use super::detection::{DetectionRecord, StatusTrace};
 use super::latency::LatencyHistogram;
+use super::noted::Noted;
 use super::spread::RumorSpread;
 
 /// Everything that one trial leaves behind.
@@ -46,6 +47,9 @@ pub struct TrialRecord {
     pub healing: Vec<HealingEpisode>,
     /// How each rumour spread, where the protocol has any.
     pub spread: Vec<RumorSpread>,
+    /// What robots counted and measured under names of their own, in order of names, then of robots.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub noted: Vec<Noted>,
     /// Connectivity at each sample time.
     pub connectivity: Vec<ConnectivitySample>,
     /// Traffic over time, in order of time.

@@ -39,13 +39,15 @@ impl Reports {
                 }
                 self.parents[robot.index()].clone_from(parents);
             }
-            // Beliefs about failures change nothing of the traffic, the graph or the mission; what was heard twice and who
-            // knows what are kept elsewhere.
+            // Beliefs about failures change nothing of the traffic, the graph or the mission; what was heard twice, who
+            // knows what, and what robots count and measure are kept elsewhere.
             Note::Watches(_)
             | Note::Suspects { .. }
             | Note::Trusts(_)
             | Note::Duplicate { .. }
-            | Note::Informed { .. } => {}
+            | Note::Informed { .. }
+            | Note::Count { .. }
+            | Note::Value { .. } => {}
         }
     }
 

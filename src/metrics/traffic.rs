@@ -88,7 +88,7 @@ pub(super) struct Traffic {
     received: Ledger,
     /// Takes no room before the first.
     duplicate: Ledger,
-    /// A table for each cause, in the order of their numbers.
+    /// A table for each cause, in the order of their numbers. That of what was sent to one out of range takes no room before the first.
     lost: [Ledger; LossCause::ALL.len()],
     /// Where the cells of each robot's present role begin in these tables.
     starts: Vec<u32>,
@@ -105,7 +105,10 @@ impl Traffic {
             sent: Ledger::new(cells),
             received: Ledger::new(cells),
             duplicate: Ledger::default(),
-            lost: LossCause::ALL.map(|_| Ledger::new(cells)),
+            lost: LossCause::ALL.map(|cause| match cause {
+                LossCause::BelowSensitivity => Ledger::default(),
+                _ => Ledger::new(cells),
+            }),
             starts: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
         }
     }
@@ -137,7 +140,9 @@ impl Traffic {
 
     #[inline]
     pub(super) fn prefetch_lost(&self, robot: ActorId, topic: Topic, cause: LossCause) {
-        prefetch(&self.lost[cause as usize].counts[self.cell(robot, topic)]);
+        if let Some(count) = self.lost[cause as usize].counts.get(self.cell(robot, topic)) {
+            prefetch(count);
+        }
     }
 
     #[inline]
@@ -162,6 +167,10 @@ impl Traffic {
     #[inline]
     pub(super) fn lost(&mut self, robot: ActorId, topic: Topic, cause: LossCause, size: MessageSize) {
         let cell = self.cell(robot, topic);
+        if cause == LossCause::BelowSensitivity {
+            let cells = self.sent.counts.len();
+            self.lost[cause as usize].counts.resize(cells, Count::default());
+        }
         self.lost[cause as usize].add(cell, size);
     }
 

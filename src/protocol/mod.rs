@@ -18,10 +18,14 @@ mod completion;
 pub mod control;
 pub mod detector;
 pub mod gossip;
+mod output;
 pub mod robot_table;
+mod serialised;
 pub mod wander;
 
 pub use completion::CompletionConfig;
+pub use output::{Directed, Evidence, Note, Output};
+pub use serialised::Serialised;
 
 /// Index of a topic in [`Protocol::TOPICS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -55,6 +59,9 @@ pub trait Protocol: Sized + 'static {
     const PROBE: Option<Topic> = None;
     /// Whether robots read [`Input::proximity`]; if not, it stays empty and costs nothing.
     const SENSES_PROXIMITY: bool = true;
+    /// Whether a robot also hears what is [sent](Output::send) to another within its range. If so it is offered a copy as of a
+    /// broadcast, and [`Frame::address`] says whom it is for; if not, its radio drops the frame and nothing is counted.
+    const OVERHEARS: bool = false;
 
     /// Names of the topics in use where robots run `detector`.
     #[must_use]
@@ -71,11 +78,25 @@ pub trait Protocol: Sized + 'static {
         Topic(0)
     }
 
+    /// Tells the robot who it is, once, before the run begins. Nothing by default.
+    fn start(&mut self, start: Start) {
+        let _ = start;
+    }
+
     /// Asks for the memory that the next step will read beside `self` ([`Process::prefetch`]).
     fn prefetch(&self) {}
 
     /// Takes one step: reads `input`, fills `output`.
     fn step(&mut self, now: SimTime, input: &mut Input<Self::Heard>, output: &mut Output<Self::Message>);
+}
+
+/// What a robot is told before the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Its own number, from 0.
+    pub me: ActorId,
+    /// How many robots the swarm has, itself included: their numbers are below.
+    pub robots: usize,
 }
 
 /// Why a robot is awake.
@@ -92,6 +113,8 @@ pub enum Wake {
 /// What a robot is told when it wakes.
 #[derive(Debug)]
 pub struct Input<M> {
+    /// Its own number.
+    pub me: ActorId,
     /// Why it is awake.
     pub wake: Wake,
     /// The frames that arrived since it last woke, in order of arrival.
@@ -135,10 +158,37 @@ pub struct Frame<M> {
     pub sequence: u32,
     /// When its transmission began.
     pub sent_at: SimTime,
-    /// How long it is.
-    pub size: MessageSize,
+    /// Its payload in bytes, headers not included.
+    pub payload_bytes: u16,
+    /// Whether another message for this robot came before it in the same frame: then that one answers for the frame's header.
+    pub rides: bool,
+    /// Whom it is for.
+    pub address: Address,
     /// What its payload says.
     pub message: M,
+}
+
+impl<M> Frame<M> {
+    /// How long it is.
+    #[inline]
+    #[must_use]
+    pub const fn size(&self) -> MessageSize {
+        MessageSize {
+            payload_bytes: self.payload_bytes,
+            rides: self.rides,
+        }
+    }
+}
+
+/// Whom a message is for, as the robot sees it that reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Address {
+    /// All that hear it.
+    Everyone,
+    /// The reader alone.
+    Me,
+    /// Another robot: the reader overhears it ([`Protocol::OVERHEARS`]).
+    Another,
 }
 
 /// A frame that reached this robot.
@@ -159,7 +209,7 @@ impl<M> Reception<M> {
     pub const fn duplicate(&self, topic: Topic) -> Note {
         Note::Duplicate {
             topic,
-            size: self.frame.size,
+            size: self.frame.size(),
         }
     }
 
@@ -168,90 +218,6 @@ impl<M> Reception<M> {
     pub fn displacement(&self) -> Vec2 {
         Vec2::new(f64::from(self.displacement[0]), f64::from(self.displacement[1]))
     }
-}
-
-/// What a robot answers when it has woken.
-#[derive(Debug)]
-pub struct Output<M> {
-    /// Messages to broadcast, in order.
-    pub broadcasts: Vec<M>,
-    /// The velocity it wants from now on, in the arena's axes, m/s; `None` keeps the last one.
-    pub velocity: Option<Vec2>,
-    /// Timers to set (`Some`, replacing the pending one of that id) or to cancel (`None`).
-    pub timers: Vec<(TimerId, Option<SimTime>)>,
-    /// What the metrics should know.
-    pub notes: Vec<Note>,
-}
-
-impl<M> Default for Output<M> {
-    fn default() -> Self {
-        Self {
-            broadcasts: Vec::new(),
-            velocity: None,
-            timers: Vec::new(),
-            notes: Vec::new(),
-        }
-    }
-}
-
-impl<M> Output<M> {
-    /// Empties it and keeps its buffers.
-    pub fn clear(&mut self) {
-        self.broadcasts.clear();
-        self.velocity = None;
-        self.timers.clear();
-        self.notes.clear();
-    }
-}
-
-/// Something about a robot that metrics follow. A robot reports a change once, when it happens.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Note {
-    /// It now has this role.
-    Role(Role),
-    /// It now works for this target (an index into the mission's targets), or for none.
-    Target(Option<u16>),
-    /// These are now the robots that it relies on to reach the root: a worker has one a link, a relay one.
-    Parents(Vec<ActorId>),
-    /// It heard this robot for the first time, and has its failure detector watch and trust it from now on.
-    Watches(ActorId),
-    /// It now believes that a robot that it watches is down.
-    Suspects {
-        /// Which.
-        robot: ActorId,
-        /// When that robot's last status arrived; with a detector that probes, its last frame.
-        heard: SimTime,
-        /// The newest of that robot's frames that arrived, by its number among them.
-        sequence: u32,
-        /// What it goes by.
-        evidence: Evidence,
-    },
-    /// It believes so no longer.
-    Trusts(ActorId),
-    /// It read a message that told it nothing new ([`Reception::duplicate`]), in the role that it had last reported: to be noted
-    /// before a change of role.
-    Duplicate {
-        /// Its topic.
-        topic: Topic,
-        /// How long it is.
-        size: MessageSize,
-    },
-    /// It knows this rumour since then.
-    Informed {
-        /// The rumour, from 0.
-        rumor: u16,
-        /// When it arrived, or was begun here.
-        at: SimTime,
-    },
-}
-
-/// What a suspicion goes by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Evidence {
-    /// The robot was not heard for too long.
-    Silence,
-    /// The robot did not answer probes in time, or others say so.
-    Probes,
 }
 
 /// Payload bytes that are no message of the protocol.
@@ -268,6 +234,9 @@ pub enum CodecError {
         /// The byte found.
         value: u8,
     },
+    /// The bytes do not make sense to [`Serialised`], or it cannot write the message.
+    #[error("no message as postcard writes it: {0}")]
+    Serialised(#[from] postcard::Error),
     /// Required by the codec traits; reading memory does not fail.
     #[error(transparent)]
     Io(#[from] std::io::Error),

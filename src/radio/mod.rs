@@ -11,8 +11,8 @@
 //!
 //! # Room for what is not here
 //! Propagation (path loss, shadowing) replaces the disk: [`Medium::range`] becomes the farthest distance at which a
-//! reception is possible, which is all that the run asks of it, and a copy below the receiver's sensitivity gets a
-//! [`LossCause`] of its own ahead of the loss model. Medium access (carrier sense, backoff, collisions, queues) needs
+//! reception is possible, which is all that the run asks of it, and a copy below the receiver's sensitivity is lost for
+//! [`LossCause::BelowSensitivity`] ahead of the loss model. Medium access (carrier sense, backoff, collisions, queues) needs
 //! transmissions that begin and end: [`Medium::transmit`] then enqueues, and the run hands the medium its own wake-ups
 //! back. Fates leave through the `receive` callback in both cases, because a fate need not be known when a frame is
 //! handed over; each new reason for a loss is one more [`LossCause`].
@@ -45,11 +45,19 @@ pub enum LossCause {
     LinkFault,
     /// Its receiver could not hear when it arrived.
     ReceiverDown,
+    /// It was sent to a robot that was out of range: too weak for the receiver, whatever the channel. Broadcasts are offered to
+    /// robots in range alone, so none is lost for this.
+    BelowSensitivity,
 }
 
 impl LossCause {
     /// Every cause, in the order of their numbers.
-    pub const ALL: [Self; 3] = [Self::Channel, Self::LinkFault, Self::ReceiverDown];
+    pub const ALL: [Self; 4] = [
+        Self::Channel,
+        Self::LinkFault,
+        Self::ReceiverDown,
+        Self::BelowSensitivity,
+    ];
 
     /// The name that reports and tables use.
     #[must_use]
@@ -58,6 +66,7 @@ impl LossCause {
             Self::Channel => "channel",
             Self::LinkFault => "link_fault",
             Self::ReceiverDown => "receiver_down",
+            Self::BelowSensitivity => "below_sensitivity",
         }
     }
 }

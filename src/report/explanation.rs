@@ -402,6 +402,7 @@ fn loss(cause: &str) -> &str {
         _ if cause == LossCause::Channel.name() => "lost in the channel",
         _ if cause == LossCause::LinkFault.name() => "stopped by a fault of the link",
         _ if cause == LossCause::ReceiverDown.name() => "lost: the receiver was down",
+        _ if cause == LossCause::BelowSensitivity.name() => "sent to it alone, and out of range",
         other => other,
     }
 }

@@ -14,7 +14,8 @@ use crate::faults::Faults;
 use crate::metrics::Recorder;
 use crate::metrics::detection::CopyFate;
 use crate::motion::World;
-use crate::protocol::{Frame, MessageSize, Protocol, Reception, Topic};
+use crate::protocol::CodecError;
+use crate::protocol::{Address, Frame, MessageSize, Output, Protocol, Reception, Topic};
 use crate::radio::{Fate, Listener, LossCause, Medium};
 
 /// From an instant to the next.
@@ -25,6 +26,12 @@ struct Arrival {
     receiver: ActorId,
     at: SimTime,
     displacement: [f32; 2],
+}
+
+/// A message of the present frame, and the robot that it is for if it is for one.
+struct Spoken<M> {
+    frame: Frame<M>,
+    to: Option<ActorId>,
 }
 
 /// What a transmission depends on beside the radio: where everybody is, and what fails.
@@ -44,8 +51,11 @@ pub struct Air<P: Protocol> {
     /// The payload under way, and who hears the present sender: buffers, kept to be used again.
     payload: BytesMut,
     listeners: Vec<Listener>,
+    /// While a frame for some of them is under way, all of them; else a buffer.
+    all_listeners: Vec<Listener>,
+    all_hindrances: Vec<f64>,
     /// The messages of the present frame: one, or all of a wake where they share one.
-    aboard: Vec<Frame<P::Heard>>,
+    aboard: Vec<Spoken<P::Heard>>,
     piggyback: bool,
     /// For each robot the number of its next message.
     sequences: Vec<u32>,
@@ -79,6 +89,8 @@ impl<P: Protocol> Air<P> {
             inboxes: std::iter::repeat_with(Inbox::default).take(robots).collect(),
             payload: BytesMut::with_capacity(256),
             listeners: Vec::new(),
+            all_listeners: Vec::new(),
+            all_hindrances: Vec::new(),
             aboard: Vec::new(),
             piggyback,
             sequences: vec![0; robots],
@@ -112,12 +124,12 @@ impl<P: Protocol> Air<P> {
         self.medium.lookahead()
     }
 
-    /// Broadcasts `messages`, which `sender` sends at `now`.
-    pub fn broadcast(
+    /// Puts on air what `sender` says at `now`, and takes it out of `output`.
+    pub fn say(
         &mut self,
         now: SimTime,
         sender: ActorId,
-        messages: impl Iterator<Item = P::Message>,
+        output: &mut Output<P::Message>,
         place: Surroundings<'_>,
         recorder: &mut Recorder,
         digest: &mut Digest,
@@ -144,17 +156,17 @@ impl<P: Protocol> Air<P> {
             };
             self.hindrances.extend(self.listeners.iter().map(hindrance));
         }
-        for message in messages {
-            let frame = self.encode(now, sender, message, recorder, digest)?;
+        for (to, message) in output.drain_said() {
+            let spoken = self.encode(now, sender, to, message, recorder, digest)?;
             if self.piggyback {
-                self.aboard.push(frame);
+                self.aboard.push(spoken);
             } else {
-                self.transmit(now, std::slice::from_ref(&frame), faults, recorder);
+                self.send(now, std::slice::from_ref(&spoken), faults, recorder);
             }
         }
         if !self.aboard.is_empty() {
             let mut aboard = std::mem::take(&mut self.aboard);
-            self.transmit(now, &aboard, faults, recorder);
+            self.send(now, &aboard, faults, recorder);
             aboard.clear();
             self.aboard = aboard;
         }
@@ -169,14 +181,16 @@ impl<P: Protocol> Air<P> {
         &mut self,
         now: SimTime,
         sender: ActorId,
+        to: Option<ActorId>,
         message: P::Message,
         recorder: &mut Recorder,
         digest: &mut Digest,
-    ) -> Result<Frame<P::Heard>, RunError> {
+    ) -> Result<Spoken<P::Heard>, RunError> {
         let topic = P::topic(&message);
         self.payload.clear();
-        self.codec.encode(message, &mut self.payload)?;
+        let encoded = self.codec.encode(message, &mut self.payload);
         let bytes = self.payload.len();
+        encoded.map_err(|source| codec_error::<P>(topic, bytes, source))?;
         let size = MessageSize {
             payload_bytes: u16::try_from(bytes).map_err(|_| RunError::TooLong {
                 protocol: type_name::<P>(),
@@ -186,29 +200,67 @@ impl<P: Protocol> Air<P> {
             rides: !self.aboard.is_empty(),
         };
         digest.payload(&self.payload);
+        if let Some(to) = to {
+            self.check_addressee(sender, to, topic)?;
+            digest.addressee(to);
+        }
         // Every receiver gets the same bytes, so they are decoded once for all.
         let message = self.decode(topic)?;
         let sequence = self.sequences[sender.index()];
         self.sequences[sender.index()] = sequence.wrapping_add(1);
         recorder.transmitted(sender, topic, size);
         if P::STATUS == Some(topic) {
-            recorder.status_sent(now, sender, sequence);
+            recorder.status_sent(now, sender, sequence, to.filter(|_| !P::OVERHEARS));
         }
-        recorder.offered(topic, self.listeners.len() as u64);
-        Ok(Frame {
+        recorder.offered(topic, self.copies(to));
+        let frame = Frame {
             sender,
             sequence,
             sent_at: now,
-            size,
+            payload_bytes: size.payload_bytes,
+            rides: size.rides,
+            address: Address::Everyone,
             message: message.into(),
-        })
+        };
+        Ok(Spoken { frame, to })
+    }
+
+    /// How many robots a message to `to`, or to everyone, is offered to: its addressee, in range or not, and whoever else hears it.
+    fn copies(&self, to: Option<ActorId>) -> u64 {
+        let in_range = self.listeners.len() as u64;
+        match to {
+            None => in_range,
+            Some(to) if P::OVERHEARS => in_range + u64::from(!self.is_in_range(to)),
+            Some(_) => 1,
+        }
+    }
+
+    fn is_in_range(&self, robot: ActorId) -> bool {
+        self.listeners.iter().any(|listener| listener.id == robot)
+    }
+
+    /// Whether `sender` may send to `to`: another robot of the swarm.
+    fn check_addressee(&self, sender: ActorId, to: ActorId, topic: Topic) -> Result<(), RunError> {
+        let robots = self.inboxes.len();
+        if to == sender || to.index() >= robots {
+            return Err(RunError::Addressee {
+                protocol: type_name::<P>(),
+                topic: topic_name::<P>(topic),
+                sender,
+                to,
+                last: robots - 1,
+            });
+        }
+        Ok(())
     }
 
     /// What receivers make of the payload of a message on `topic`.
     fn decode(&mut self, topic: Topic) -> Result<P::Message, RunError> {
         let bytes = self.payload.len();
         let (protocol, name) = (type_name::<P>(), topic_name::<P>);
-        let message = self.codec.decode(&mut self.payload)?.ok_or(RunError::Undecodable {
+        let decoded = self.codec.decode(&mut self.payload);
+        let decoded = decoded.map_err(|source| codec_error::<P>(topic, bytes, source))?;
+        let message = decoded.ok_or(RunError::Undecodable {
             protocol,
             topic: name(topic),
             bytes,
@@ -233,12 +285,60 @@ impl<P: Protocol> Air<P> {
         Ok(message)
     }
 
-    /// Transmits the messages `aboard`, one at least and all of one sender, as one frame: at each receiver they share one fate.
+    /// Transmits the messages `aboard`, one at least and all of one sender, as one frame.
+    #[inline]
+    fn send(&mut self, now: SimTime, aboard: &[Spoken<P::Heard>], faults: &Faults, recorder: &mut Recorder) {
+        if aboard.iter().all(|spoken| spoken.to.is_none()) {
+            self.transmit::<false>(now, aboard, faults, recorder);
+        } else {
+            self.address(now, aboard, faults, recorder);
+        }
+    }
+
+    /// Transmits a frame of which a message at least is for one robot. Those hear it for whom something in it is; the radios of others
+    /// drop it, unless robots overhear. An addressee out of range gets nothing.
+    #[inline(never)]
+    fn address(&mut self, now: SimTime, aboard: &[Spoken<P::Heard>], faults: &Faults, recorder: &mut Recorder) {
+        for spoken in aboard {
+            if let Some(to) = spoken.to
+                && !self.is_in_range(to)
+                && !self.losses.iter().any(|loss| loss.0 == to)
+            {
+                self.losses.push((to, LossCause::BelowSensitivity));
+            }
+        }
+        let everyone = P::OVERHEARS || aboard.iter().any(|spoken| spoken.to.is_none());
+        if everyone {
+            return self.transmit::<true>(now, aboard, faults, recorder);
+        }
+        std::mem::swap(&mut self.listeners, &mut self.all_listeners);
+        std::mem::swap(&mut self.hindrances, &mut self.all_hindrances);
+        self.listeners.clear();
+        self.hindrances.clear();
+        for (place, &listener) in self.all_listeners.iter().enumerate() {
+            if aboard.iter().any(|spoken| spoken.to == Some(listener.id)) {
+                self.listeners.push(listener);
+                self.hindrances.extend(self.all_hindrances.get(place));
+            }
+        }
+        self.transmit::<true>(now, aboard, faults, recorder);
+        std::mem::swap(&mut self.listeners, &mut self.all_listeners);
+        std::mem::swap(&mut self.hindrances, &mut self.all_hindrances);
+    }
+
+    /// Transmits the messages `aboard` to the present listeners, for whom they share one fate each. `ADDRESSED`: whether one at least
+    /// is for one robot.
     // Inlined where a frame has one message, nearly always, the loops over what is aboard are gone.
     #[allow(clippy::inline_always)]
     #[inline(always)]
-    fn transmit(&mut self, now: SimTime, aboard: &[Frame<P::Heard>], faults: &Faults, recorder: &mut Recorder) {
-        let sender = aboard[0].sender;
+    fn transmit<const ADDRESSED: bool>(
+        &mut self,
+        now: SimTime,
+        aboard: &[Spoken<P::Heard>],
+        faults: &Faults,
+        recorder: &mut Recorder,
+    ) {
+        let sender = aboard[0].frame.sender;
         if !self.hindrances.is_empty() {
             self.hinder(sender, faults);
         }
@@ -261,17 +361,17 @@ impl<P: Protocol> Air<P> {
             Fate::Lost(cause) => losses.push((receiver, cause)),
         });
         if self.prefetches {
-            self.prefetch_fates(P::topic(aboard[0].message.borrow()), recorder);
+            self.prefetch_fates(P::topic(aboard[0].frame.message.borrow()), recorder);
         }
         for (receiver, cause) in self.losses.drain(..) {
-            for frame in aboard {
-                record_loss::<P>(receiver, frame, cause, recorder);
+            for copy in copies_for::<P, ADDRESSED>(receiver, cause != LossCause::BelowSensitivity, aboard) {
+                record_loss::<P>(receiver, copy.frame, copy.size, cause, recorder);
             }
         }
         if let Some(trace) = recorder.trace_of(sender) {
-            let is_status = |frame: &&Frame<P::Heard>| P::STATUS == Some(P::topic(frame.message.borrow()));
-            for frame in aboard.iter().filter(is_status) {
-                for arrival in &self.arrivals {
+            for arrival in &self.arrivals {
+                let copies = copies_for::<P, ADDRESSED>(arrival.receiver, true, aboard).map(|copy| copy.frame);
+                for frame in copies.filter(|frame| P::STATUS == Some(P::topic(frame.message.borrow()))) {
                     trace.fate(frame.sequence, arrival.receiver, CopyFate::Arrives(arrival.at));
                 }
             }
@@ -281,10 +381,10 @@ impl<P: Protocol> Air<P> {
                 self.reached.push(arrival.receiver);
             }
             let inbox = &mut self.inboxes[arrival.receiver.index()];
-            for frame in aboard {
+            for copy in copies_for::<P, ADDRESSED>(arrival.receiver, true, aboard) {
                 inbox.push(Reception {
                     at: arrival.at,
-                    frame: frame.clone(),
+                    frame: copy.into_frame::<ADDRESSED>(),
                     displacement: arrival.displacement,
                 });
             }
@@ -342,7 +442,8 @@ impl<P: Protocol> Air<P> {
         let since = self.deaf_since[receiver.index()];
         if since < until {
             self.inboxes[receiver.index()].drop_arrivals(since, until, |reception| {
-                record_loss::<P>(receiver, &reception.frame, LossCause::ReceiverDown, recorder);
+                let frame = &reception.frame;
+                record_loss::<P>(receiver, frame, frame.size(), LossCause::ReceiverDown, recorder);
             });
         }
     }
@@ -408,9 +509,68 @@ fn topic_name<P: Protocol>(topic: Topic) -> &'static str {
     P::TOPICS.get(usize::from(topic.0)).unwrap_or(&"that it does not name")
 }
 
-fn record_loss<P: Protocol>(receiver: ActorId, frame: &Frame<P::Heard>, cause: LossCause, recorder: &mut Recorder) {
+fn codec_error<P: Protocol>(topic: Topic, bytes: usize, source: CodecError) -> RunError {
+    RunError::Codec {
+        protocol: type_name::<P>(),
+        topic: topic_name::<P>(topic),
+        bytes,
+        source,
+    }
+}
+
+/// A message at one receiver.
+struct Copy<'a, M> {
+    frame: &'a Frame<M>,
+    size: MessageSize,
+    address: Address,
+}
+
+impl<M: Clone> Copy<'_, M> {
+    #[inline]
+    fn into_frame<const ADDRESSED: bool>(self) -> Frame<M> {
+        let mut frame = self.frame.clone();
+        if ADDRESSED {
+            frame.rides = self.size.rides;
+            frame.address = self.address;
+        }
+        frame
+    }
+}
+
+/// What of a frame with the messages `aboard` is for `receiver`, which is `in_range` or hears no broadcast. Of it the first message
+/// answers for the frame's header there.
+#[inline]
+fn copies_for<P: Protocol, const ADDRESSED: bool>(
+    receiver: ActorId,
+    in_range: bool,
+    aboard: &[Spoken<P::Heard>],
+) -> impl Iterator<Item = Copy<'_, P::Heard>> {
+    let mut began = false;
+    aboard.iter().filter_map(move |Spoken { frame, to }| {
+        let mut size = frame.size();
+        let mut address = Address::Everyone;
+        if ADDRESSED {
+            address = match *to {
+                None if in_range => Address::Everyone,
+                Some(to) if to == receiver => Address::Me,
+                Some(_) if P::OVERHEARS && in_range => Address::Another,
+                None | Some(_) => return None,
+            };
+            size.rides = std::mem::replace(&mut began, true);
+        }
+        Some(Copy { frame, size, address })
+    })
+}
+
+fn record_loss<P: Protocol>(
+    receiver: ActorId,
+    frame: &Frame<P::Heard>,
+    size: MessageSize,
+    cause: LossCause,
+    recorder: &mut Recorder,
+) {
     let topic = P::topic(frame.message.borrow());
-    recorder.lost(receiver, topic, cause, frame.size);
+    recorder.lost(receiver, topic, cause, size);
     if P::STATUS == Some(topic) {
         recorder.status_lost(receiver, frame.sender, frame.sequence, cause);
     }
@@ -421,7 +581,7 @@ fn record_delivery<P: Protocol>(receiver: ActorId, reception: &Reception<P::Hear
     recorder.delivered(
         receiver,
         P::topic(frame.message.borrow()),
-        frame.size,
+        frame.size(),
         reception.at.since(frame.sent_at),
     );
 }

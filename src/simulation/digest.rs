@@ -47,6 +47,11 @@ impl Digest {
         self.0.update(bytes);
     }
 
+    /// The message of which [`payload`](Self::payload) has just been told is for this robot alone.
+    pub fn addressee(&mut self, to: ActorId) {
+        self.words(&[u64::from(to.0)]);
+    }
+
     /// A fault began or ended.
     pub fn fault(&mut self, now: SimTime, change: &Change) {
         let robot = match change.subject {
@@ -84,7 +89,7 @@ mod tests {
     use super::*;
     use crate::faults::{Effect, Health};
     use crate::geometry::{Pose, Vec2};
-    use crate::protocol::{Frame, MessageSize, Reception, TimerId};
+    use crate::protocol::{Address, Frame, Reception, TimerId};
 
     fn reception(at: u64, sequence: u32) -> Reception<()> {
         Reception {
@@ -93,7 +98,9 @@ mod tests {
                 sender: ActorId(3),
                 sequence,
                 sent_at: SimTime::ZERO,
-                size: MessageSize::alone(4),
+                payload_bytes: 4,
+                rides: false,
+                address: Address::Everyone,
                 message: (),
             },
             displacement: [0.0; 2],
@@ -102,6 +109,7 @@ mod tests {
 
     fn digest(change: impl FnOnce(&mut Digest, &mut Input<()>, &mut Output<()>)) -> u128 {
         let mut input = Input {
+            me: ActorId(1),
             wake: Wake::ControlStep,
             inbox: vec![reception(5, 1), reception(6, 2)],
             pose: Pose::default(),
@@ -157,6 +165,8 @@ mod tests {
             digest(|_, _, output| output.velocity = Some(Vec2::y())),
             digest(|digest, _, _| digest.payload(&[1])),
             digest(|digest, _, _| digest.payload(&[2])),
+            digest(|digest, _, _| digest.addressee(ActorId(1))),
+            digest(|digest, _, _| digest.addressee(ActorId(2))),
             digest(fault(true)),
             digest(fault(false)),
         ];

@@ -1,13 +1,51 @@
 //! How a run can fail.
 
+use crate::engine::ActorId;
 use crate::protocol::CodecError;
 
 /// Why a run stopped before its end.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A robot's message could not be encoded, or its bytes not be decoded.
-    #[error("a message cannot cross the air: {0}")]
-    Codec(#[from] CodecError),
+    #[error("a message of {protocol} on topic `{topic}` cannot cross the air, {bytes} bytes of it: {source}")]
+    Codec {
+        /// The protocol's type.
+        protocol: &'static str,
+        /// The message's topic.
+        topic: &'static str,
+        /// The length of its payload, as far as it was written.
+        bytes: usize,
+        /// What the codec says.
+        source: CodecError,
+    },
+    /// A robot sends a message to itself, or to a robot that does not exist.
+    #[error(
+        "robot {sender} of {protocol} sends a message on topic `{topic}` to robot {to}: it can send to others alone, numbered from 0 to {last}"
+    )]
+    Addressee {
+        /// The protocol's type.
+        protocol: &'static str,
+        /// The message's topic.
+        topic: &'static str,
+        /// Who sends it.
+        sender: ActorId,
+        /// To whom.
+        to: ActorId,
+        /// The greatest number of a robot.
+        last: usize,
+    },
+    /// A robot measured what is no finite number.
+    #[error("robot {robot} of {protocol} measures `{name}` as {value}, which is no finite number")]
+    Value {
+        /// The protocol's type.
+        protocol: &'static str,
+        /// Who measured it.
+        robot: ActorId,
+        /// What it is called.
+        name: &'static str,
+        /// How much it is.
+        value: f64,
+    },
     /// The codec made bytes that it does not read as a whole message.
     #[error("the codec of {protocol} does not read its own {bytes} bytes on topic `{topic}` as a whole message")]
     Undecodable {

@@ -88,7 +88,7 @@ mod tests {
 
     use super::*;
     use crate::engine::ActorId;
-    use crate::protocol::{Frame, MessageSize};
+    use crate::protocol::{Address, Frame};
 
     fn reception(at: u64, sender: u32, sequence: u32) -> Reception<()> {
         Reception {
@@ -97,7 +97,9 @@ mod tests {
                 sender: ActorId(sender),
                 sequence,
                 sent_at: SimTime::ZERO,
-                size: MessageSize::alone(4),
+                payload_bytes: 4,
+                rides: false,
+                address: Address::Everyone,
                 message: (),
             },
             displacement: [0.0; 2],

@@ -14,7 +14,7 @@ use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, Tria
 use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm as Repeated, WakeConfig};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
-use crate::protocol::{CompletionConfig, Protocol, Robot};
+use crate::protocol::{CompletionConfig, Protocol, Robot, Start};
 use crate::radio::{Medium, RadioConfig};
 
 /// How robots are run. Both give the same results, byte for byte.
@@ -107,7 +107,15 @@ impl Setup {
         stop: &CancellationToken,
     ) -> Result<TrialRecord, RunError> {
         assert_eq!(poses.len(), robots.len(), "every robot needs a pose");
-        let robots = robots.into_iter().map(Robot).collect();
+        let swarm = robots.len();
+        let started = |(mut robot, number): (P, u32)| {
+            robot.start(Start {
+                me: ActorId(number),
+                robots: swarm,
+            });
+            Robot(robot)
+        };
+        let robots = robots.into_iter().zip(0..).map(started).collect();
         let run = async {
             match driver {
                 DriverKind::Actors => self.run_with(poses, Actors::spawn(robots), stop).await,

@@ -6,6 +6,8 @@
 //! Misra), here for the sake of mailboxes and of memory. Their answers take effect in order of time all the same, each when its
 //! instant comes, so that no result can tell.
 
+use std::any::type_name;
+
 use super::air::Surroundings;
 use super::error::RunError;
 use super::run::{Event, JobFor, Run};
@@ -135,6 +137,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                 actor: robot,
                 now,
                 input: Input {
+                    me: robot,
                     wake,
                     inbox: Vec::new(),
                     pose,
@@ -147,6 +150,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         job.actor = robot;
         job.now = now;
         let input = &mut job.input;
+        input.me = robot;
         input.wake = wake;
         input.pose = pose;
         input.random = random;
@@ -173,6 +177,17 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         let (robot, now) = (*robot, *now);
         self.digest.wake(now, robot, input, output);
         for note in output.notes.drain(..) {
+            if let Note::Value { name, value } = note
+                && !value.is_finite()
+            {
+                let protocol = type_name::<P>();
+                return Err(RunError::Value {
+                    protocol,
+                    robot,
+                    name,
+                    value,
+                });
+            }
             self.recorder.note(robot, &note);
             let inbox = Inbox {
                 read: &input.inbox,
@@ -187,14 +202,13 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         if let Some(velocity) = output.velocity {
             self.world.command(robot, velocity);
         }
-        if !output.broadcasts.is_empty() && self.faults.health(robot).sends {
-            let messages = output.broadcasts.drain(..);
+        if output.says() && self.faults.health(robot).sends {
             let place = Surroundings {
                 world: &self.world,
                 faults: &self.faults,
             };
             self.air
-                .broadcast(now, robot, messages, place, &mut self.recorder, &mut self.digest)?;
+                .say(now, robot, output, place, &mut self.recorder, &mut self.digest)?;
         }
         let rang = input.wake != Wake::ControlStep;
         if rang || self.rhythm.wake_on_reception || !output.timers.is_empty() {

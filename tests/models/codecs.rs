@@ -3,8 +3,10 @@
 use bytes::{Buf, BufMut, BytesMut};
 use desim::engine::{SimTime, Span};
 use desim::geometry::{Pose, Vec2};
-use desim::protocol::{CodecError, Input, Output, Protocol, Topic};
+use desim::protocol::{CodecError, Input, Output, Protocol, Serialised, Topic};
 use desim::simulation::{DriverKind, RunError, Setup};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use tokio_util::codec::{Decoder, Encoder};
 use tokio_util::sync::CancellationToken;
 
@@ -97,4 +99,64 @@ fn a_codec_that_changes_the_topic_is_refused_with_both() {
 fn a_codec_that_waits_for_more_than_it_wrote_and_a_message_too_long_are_refused_by_name() {
     assert_refused(run::<3, 4, 9>(), &["Talker", "3 bytes", "`news`", "whole message"]);
     assert_refused(run::<70000, 1, 9>(), &["Talker", "70000 bytes", "`news`", "65535"]);
+}
+
+/// A robot with a codec that it did not write: it greets, or says what does not come back as it was.
+struct Borrower(Said);
+
+#[derive(Clone, Copy, Debug)]
+enum Said {
+    Greeting,
+    Long,
+    Spoilt,
+}
+
+impl Serialize for Said {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Greeting => 0_u8.serialize(serializer),
+            Self::Long => (1_u8, 0_u8, 0_u8).serialize(serializer),
+            Self::Spoilt => 9_u8.serialize(serializer),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Said {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match u8::deserialize(deserializer)? {
+            0 => Ok(Self::Greeting),
+            1 => Ok(Self::Long),
+            _ => Err(D::Error::custom("spoilt")),
+        }
+    }
+}
+
+impl Protocol for Borrower {
+    type Message = Said;
+    type Heard = Said;
+    type Codec = Serialised<Said>;
+    const TOPICS: &'static [&'static str] = &["greeting", "news"];
+    const ROLES: &'static [&'static str] = &["robot"];
+
+    fn topic(said: &Said) -> Topic {
+        Topic(u8::from(!matches!(said, Said::Greeting)))
+    }
+
+    fn step(&mut self, _: SimTime, _: &mut Input<Said>, output: &mut Output<Said>) {
+        output.broadcast(self.0);
+    }
+}
+
+#[test]
+fn a_message_that_serde_reads_otherwise_than_it_writes_is_refused_by_name_topic_and_bytes() {
+    let run = |said| {
+        let robots = vec![Borrower(said), Borrower(said)];
+        let setup = Setup::lasting(Span::from_secs(2.0));
+        let poses = vec![Pose::default(); 2];
+        let record = setup.run(poses, robots, DriverKind::Inline, &CancellationToken::new())?;
+        Ok(record.ledger[0].delivered)
+    };
+    assert!(run(Said::Greeting).unwrap() > 0);
+    assert_refused(run(Said::Long), &["Borrower", "reads 1 of its own 3 bytes", "`news`"]);
+    assert_refused(run(Said::Spoilt), &["Borrower", "`news`", "1 bytes", "postcard"]);
 }

@@ -12,4 +12,5 @@ mod limits;
 mod phases;
 mod radio;
 mod scaling;
+mod sends;
 mod wandering;

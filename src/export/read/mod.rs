@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 pub use records::NameLists;
 
 use crate::metrics::TrialRecord;
-use records::{Records, TABLES};
+use records::{OPTIONAL as MAYBE, Records, TABLES};
 use table::Table;
 
 /// Names of the tables that are read.
@@ -26,7 +26,10 @@ pub const READ: [&str; TABLES.len()] = {
     names
 };
 
-/// The records that `files`, the bytes of the tables of [`READ`] by name, were written from, but for their paths and the
+/// Names of the tables that are read where they are there.
+pub const OPTIONAL: [&str; MAYBE.len()] = [MAYBE[0].0];
+
+/// The records that `files`, the bytes of the tables of [`READ`] and [`OPTIONAL`] by name, were written from, but for their paths and the
 /// numbers of the frames that suspicions began with, which no report needs.
 ///
 /// # Errors
@@ -40,6 +43,12 @@ pub fn records(
         let bytes = files.remove(name).unwrap_or_default();
         let table = Table::new(bytes).and_then(|table| fill(&mut records, &table));
         table.map_err(|wrong| (name, wrong))?;
+    }
+    for (name, fill) in MAYBE {
+        if let Some(bytes) = files.remove(name) {
+            let table = Table::new(bytes).and_then(|table| fill(&mut records, &table));
+            table.map_err(|wrong| (name, wrong))?;
+        }
     }
     Ok(records.finish())
 }

@@ -57,6 +57,9 @@ pub const TABLES: [(&str, Fill); 11] = [
     ("spread.parquet", traffic::spread),
 ];
 
+/// Tables that are there only where there is something to put into them.
+pub const OPTIONAL: [(&str, Fill); 1] = [("notes.parquet", traffic::notes)];
+
 impl<'a> Records<'a> {
     pub fn new(names: &'a NameLists) -> Self {
         Self {
@@ -114,6 +117,7 @@ fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             faults: Vec::new(),
             healing: Vec::new(),
             spread: Vec::new(),
+            noted: Vec::new(),
             connectivity: Vec::new(),
             series: Vec::new(),
             robots: Vec::new(),

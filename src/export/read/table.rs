@@ -63,8 +63,9 @@ impl Table {
     /// Counts, some of them missing.
     pub fn optional_counts(&self, name: &str) -> Result<Vec<Option<u64>>, Wrong> {
         let rows = self.optional::<Int64Type>(name)?;
-        let count = |value: i64| u64::try_from(value).map_err(|_| format!("column `{name}` holds the count {value}"));
-        rows.into_iter().map(|value| value.map(count).transpose()).collect()
+        rows.into_iter()
+            .map(|value| value.map(|value| counted(name, value)).transpose())
+            .collect()
     }
 
     /// Numbers that use all of 64 bits.
@@ -104,19 +105,38 @@ impl Table {
 
     /// Lists of small numbers.
     pub fn lists(&self, name: &str) -> Result<Vec<Vec<u32>>, Wrong> {
+        self.lists_of::<Int32Type, _>(name, |value| unsigned(name, value))
+    }
+
+    /// Lists of double-precision numbers.
+    pub fn lists_of_numbers(&self, name: &str) -> Result<Vec<Vec<f64>>, Wrong> {
+        self.lists_of::<DoubleType, _>(name, Ok)
+    }
+
+    /// Lists of counts.
+    pub fn lists_of_counts(&self, name: &str) -> Result<Vec<Vec<u64>>, Wrong> {
+        self.lists_of::<Int64Type, _>(name, |value| counted(name, value))
+    }
+
+    fn lists_of<T: DataType, U>(
+        &self,
+        name: &str,
+        read: impl Fn(T::T) -> Result<U, Wrong>,
+    ) -> Result<Vec<Vec<U>>, Wrong> {
         let Levels {
             values,
             present,
             continued,
-        } = self.levels::<Int32Type>(name)?;
+        } = self.levels::<T>(name)?;
         let mut values = values.into_iter();
-        let mut rows: Vec<Vec<u32>> = Vec::new();
+        let mut rows: Vec<Vec<U>> = Vec::new();
         for (present, continued) in present.into_iter().zip(continued) {
             if continued == 0 {
                 rows.push(Vec::new());
             }
             if let (1.., Some(row)) = (present, rows.last_mut()) {
-                row.push(unsigned(name, values.next().unwrap_or(-1))?);
+                let value = values.next().ok_or_else(|| format!("its column `{name}` has gaps"))?;
+                row.push(read(value)?);
             }
         }
         Ok(rows)
@@ -187,6 +207,10 @@ impl Table {
 
 fn unsigned(name: &str, value: i32) -> Result<u32, Wrong> {
     u32::try_from(value).map_err(|_| format!("column `{name}` holds the number {value}"))
+}
+
+fn counted(name: &str, value: i64) -> Result<u64, Wrong> {
+    u64::try_from(value).map_err(|_| format!("column `{name}` holds the count {value}"))
 }
 
 /// Values of which none may be missing.

@@ -3,7 +3,7 @@
 use super::records::Records;
 use super::table::{Table, Wrong};
 use crate::engine::{ActorId, SimTime};
-use crate::metrics::{RobotBytes, RumorSpread, SeriesEntry, TopicFates, TrafficRow, Volume};
+use crate::metrics::{Amount, Noted, RobotBytes, RumorSpread, SeriesEntry, TopicFates, TrafficRow, Values, Volume};
 use crate::radio::LossCause;
 
 pub fn frames(records: &mut Records, table: &Table) -> Result<(), Wrong> {
@@ -73,6 +73,31 @@ fn way<'a>(row: &'a mut TrafficRow, name: &str) -> Result<&'a mut Volume, Wrong>
         (_, Some(cause)) => Ok(&mut row.lost[cause]),
         (other, None) => Err(format!("it has rows of an unknown direction `{other}`")),
     }
+}
+
+pub fn notes(records: &mut Records, table: &Table) -> Result<(), Wrong> {
+    let (trial, name, robot) = (table.ids("trial")?, table.texts("name")?, table.ids("robot")?);
+    let (kind, count) = (table.texts("kind")?, table.counts("count")?);
+    let extremes = ["sum", "min", "max"].map(|name| table.optional_numbers(name));
+    let [sum, min, max] = extremes;
+    let (sum, min, max) = (sum?, min?, max?);
+    let (values, times) = (table.lists_of_numbers("values")?, table.lists_of_counts("times")?);
+    for row in 0..trial.len() {
+        let amount = match (kind[row].as_str(), sum[row], min[row], max[row]) {
+            ("count", None, None, None) => Amount::Count(count[row]),
+            ("value", Some(sum), Some(min), Some(max)) => {
+                let buckets = values[row].iter().copied().zip(times[row].iter().copied());
+                Amount::Values(Values::restored(sum, min, max, buckets))
+            }
+            (other, ..) => return Err(format!("it has a row of the kind `{other}` that is none")),
+        };
+        records.of(trial[row])?.noted.push(Noted {
+            name: name[row].clone(),
+            robot: ActorId(robot[row]),
+            amount,
+        });
+    }
+    Ok(())
 }
 
 pub fn spread(records: &mut Records, table: &Table) -> Result<(), Wrong> {

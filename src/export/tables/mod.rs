@@ -7,6 +7,7 @@ mod faults;
 mod frames;
 mod healing;
 mod latency;
+mod notes;
 mod robots;
 mod series;
 mod spread;
@@ -14,7 +15,7 @@ mod trajectories;
 mod trials;
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Names;
 use super::table::Table;
@@ -35,10 +36,12 @@ pub struct Tables {
     healing: Table<healing::Row>,
     spread: Table<spread::Row>,
     series: Table<series::Row>,
+    /// Where it goes, and once there is something to put into it, the table.
+    notes: (PathBuf, Option<Table<notes::Row>>),
 }
 
 impl Tables {
-    /// Names of the files.
+    /// Names of the files that are always there.
     pub const FILES: [&str; 12] = [
         "trials.parquet",
         "frames.parquet",
@@ -53,6 +56,8 @@ impl Tables {
         "series.parquet",
         "spread.parquet",
     ];
+    /// Names of the files that are there only where there is something to put into them.
+    pub const OPTIONAL: [&str; 1] = ["notes.parquet"];
 
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
     ///
@@ -74,6 +79,7 @@ impl Tables {
             detection: Table::create(&path(9), detection::columns())?,
             spread: Table::create(&path(11), spread::columns())?,
             series: Table::create(&path(10), series::columns())?,
+            notes: (dir.join(Self::OPTIONAL[0]), None),
         })
     }
 
@@ -93,14 +99,23 @@ impl Tables {
         self.faults.extend(faults::rows(record, &self.names))?;
         self.healing.extend(healing::rows(record, &self.names))?;
         self.spread.extend(spread::rows(record))?;
-        self.series.extend(series::rows(record, &self.names))
+        self.series.extend(series::rows(record, &self.names))?;
+        if record.noted.is_empty() {
+            return Ok(());
+        }
+        let (path, table) = &mut self.notes;
+        let table = match table {
+            Some(table) => table,
+            none => none.insert(Table::create(path, notes::columns())?),
+        };
+        table.extend(notes::rows(record))
     }
 
-    /// Ends every file.
+    /// Ends every file, and answers the names of those that there are.
     ///
     /// # Errors
     /// If a file cannot be written.
-    pub fn finish(self) -> io::Result<()> {
+    pub fn finish(self) -> io::Result<Vec<&'static str>> {
         self.trials.finish()?;
         self.frames.finish()?;
         self.bandwidth.finish()?;
@@ -112,6 +127,12 @@ impl Tables {
         self.faults.finish()?;
         self.healing.finish()?;
         self.spread.finish()?;
-        self.series.finish()
+        self.series.finish()?;
+        let mut files = Self::FILES.to_vec();
+        if let (_, Some(notes)) = self.notes {
+            notes.finish()?;
+            files.push(Self::OPTIONAL[0]);
+        }
+        Ok(files)
     }
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::geometry::Pose;
 use crate::protocol::control::PhaseConfig;
 use crate::protocol::gossip::{RelayConfig, RetransmitConfig};
-use crate::protocol::{Frame, MessageSize};
+use crate::protocol::{Address, Frame, MessageSize};
 
 const PERIOD: Span = Span::from_nanos(100_000_000);
 
@@ -39,12 +39,15 @@ fn step(robot: &mut Rumor, step: u64, heard: &[(u32, Message)]) -> Output<Messag
             sender: ActorId(sender),
             sequence: 0,
             sent_at: now,
-            size: MessageSize::alone(36),
+            payload_bytes: 36,
+            rides: false,
+            address: Address::Everyone,
             message,
         },
         displacement: [0.0; 2],
     };
     let mut input = Input {
+        me: ActorId(0),
         wake: Wake::ControlStep,
         inbox: heard.iter().map(receive).collect(),
         pose: Pose::default(),

@@ -37,7 +37,19 @@ struct Sender {
 #[derive(Debug)]
 struct Sent {
     sequence: u32,
+    /// The number of the robot that it was sent to; `EVERYONE` if it was for all in range.
+    to: u32,
     at: SimTime,
+}
+
+/// No robot's number.
+const EVERYONE: u32 = u32::MAX;
+
+impl Sent {
+    /// Whether `observer` was to hear it.
+    fn is_for(&self, observer: ActorId) -> bool {
+        self.to == EVERYONE || self.to == observer.0
+    }
 }
 
 /// A lost copy, at its sender: what one frame loses lies together in memory.
@@ -93,8 +105,8 @@ impl StatusLog {
         prefetch_end(lost);
     }
 
-    /// `sender` sends a status, its frame number `sequence`.
-    pub fn sent(&mut self, now: SimTime, sender: ActorId, sequence: u32) {
+    /// `sender` sends a status, its frame number `sequence`: to one robot alone, or to all in range.
+    pub fn sent(&mut self, now: SimTime, sender: ActorId, sequence: u32, to: Option<ActorId>) {
         if self.memory == Span::ZERO {
             return;
         }
@@ -107,7 +119,11 @@ impl StatusLog {
             sender.since = now;
             sender.first.get_or_insert(sequence);
         }
-        sender.sent.push(Sent { sequence, at: now });
+        sender.sent.push(Sent {
+            sequence,
+            to: to.map_or(EVERYONE, |robot| robot.0),
+            at: now,
+        });
     }
 
     /// The copy of a status that was meant for `receiver` is lost.
@@ -132,7 +148,7 @@ impl StatusLog {
     ) -> Missed {
         let subject_log = &self.senders[subject.index()];
         let recent = (now - self.memory)..now;
-        let statuses = subject_log.sent.iter();
+        let statuses = subject_log.sent.iter().filter(|status| status.is_for(observer));
         let statuses = statuses.filter(|status| is_newer(status.sequence, sequence) && recent.contains(&status.at));
         let (mut missed, mut total, mut ends) = (Missed::default(), 0, None);
         for status in statuses {
@@ -165,14 +181,12 @@ impl StatusLog {
                 || frames.any(|frame| frame.sequence == status.sequence && frame.sender == subject)
         };
         // Newer ones may have been sent when the two had parted again.
-        let met = sent.iter().rev().skip_while(|status| !reached(status));
+        let meant = || sent.iter().rev().filter(|status| status.is_for(observer));
+        let met = meant().skip_while(|status| !reached(status));
         let Some(begun) = met.take_while(reached).last() else {
             return sent.last().map(|status| status.at);
         };
-        let before = sent
-            .iter()
-            .rev()
-            .find(|status| is_newer(begun.sequence, status.sequence));
+        let before = meant().find(|status| is_newer(begun.sequence, status.sequence));
         match before {
             Some(before) => Some(before.at + begun.at.since(before.at) / 2),
             None => (*first != Some(begun.sequence)).then_some(begun.at),
@@ -211,7 +225,7 @@ fn is_newer(a: u32, b: u32) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::protocol::{Frame, MessageSize};
+    use crate::protocol::{Address, Frame};
 
     const OBSERVER: ActorId = ActorId(0);
     const SUBJECT: ActorId = ActorId(1);
@@ -227,7 +241,9 @@ mod tests {
                 sender: SUBJECT,
                 sequence,
                 sent_at: at(0.0),
-                size: MessageSize::alone(4),
+                payload_bytes: 4,
+                rides: false,
+                address: Address::Everyone,
                 message: (),
             },
             displacement: [0.0; 2],
@@ -238,7 +254,7 @@ mod tests {
     fn log(memory_s: f64) -> StatusLog {
         let mut log = StatusLog::new(2, Span::from_secs(memory_s));
         for status in 0..7_u32 {
-            log.sent(at(f64::from(status)), SUBJECT, 10 * status);
+            log.sent(at(f64::from(status)), SUBJECT, 10 * status, None);
         }
         log
     }
@@ -282,7 +298,7 @@ mod tests {
     fn old_statuses_and_their_losses_take_no_room() {
         let mut log = StatusLog::new(2, Span::from_secs(2.0));
         for status in 0..1000_u32 {
-            log.sent(at(f64::from(status)), SUBJECT, status);
+            log.sent(at(f64::from(status)), SUBJECT, status, None);
             log.lost(OBSERVER, SUBJECT, status, LossCause::Channel);
         }
         let kept = &log.senders[SUBJECT.index()];

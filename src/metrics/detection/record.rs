@@ -54,7 +54,7 @@ impl Suspicion {
     pub fn verdict(&self) -> Verdict {
         match self.cause {
             _ if self.subject_down => Verdict::Right,
-            Cause::OutOfRange => Verdict::OutOfRange,
+            Cause::OutOfRange | Cause::Lost(LossCause::BelowSensitivity) => Verdict::OutOfRange,
             Cause::Lost(LossCause::ReceiverDown) => Verdict::Observer,
             _ => Verdict::Mistake,
         }

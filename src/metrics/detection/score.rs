@@ -96,10 +96,10 @@ impl Scorer {
         }
     }
 
-    /// `sender` sends a status, its frame number `sequence`.
+    /// `sender` sends a status, its frame number `sequence`: to one robot alone, or to all in range.
     #[inline]
-    pub fn sent(&mut self, now: SimTime, sender: ActorId, sequence: u32) {
-        self.log.sent(now, sender, sequence);
+    pub fn sent(&mut self, now: SimTime, sender: ActorId, sequence: u32, to: Option<ActorId>) {
+        self.log.sent(now, sender, sequence, to);
     }
 
     /// Asks for what is known of the statuses of `robot`.
@@ -209,7 +209,8 @@ impl Scorer {
                 self.cross_until(now);
                 self.trust(now, observer, subject);
             }
-            Note::Duplicate { .. } | Note::Informed { .. } | Note::Role(_) | Note::Target(_) | Note::Parents(_) => {}
+            Note::Role(_) | Note::Target(_) | Note::Parents(_) | Note::Duplicate { .. } | Note::Informed { .. } => {}
+            Note::Count { .. } | Note::Value { .. } => {}
         }
     }
 
@@ -359,7 +360,8 @@ impl Scorer {
 /// the two could hear each other.
 fn cause(missed: &Missed, evidence: Evidence) -> Cause {
     let cause = missed.cause();
-    let hindered = matches!(cause, Cause::OutOfRange | Cause::Lost(LossCause::ReceiverDown));
+    let hindrances = [LossCause::ReceiverDown, LossCause::BelowSensitivity].map(Cause::Lost);
+    let hindered = cause == Cause::OutOfRange || hindrances.contains(&cause);
     match evidence {
         Evidence::Probes if !hindered => Cause::Unanswered,
         Evidence::Probes | Evidence::Silence => cause,

@@ -15,6 +15,7 @@ use super::faults::Failures;
 use super::healing::Healing;
 use super::latency::LatencyHistogram;
 use super::mission::{Mission, Scene};
+use super::noted::Notes;
 use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
 use super::reports::Reports;
 use super::series::Series;
@@ -89,6 +90,7 @@ pub struct Recorder {
     trace: Option<StatusTrace>,
     judge: Option<Judge>,
     spread: Spread,
+    notes: Notes,
     /// How far the rumours have come, if there are any.
     everyone_knows: Option<Hearing>,
     connectivity: Vec<ConnectivitySample>,
@@ -132,6 +134,7 @@ impl Recorder {
                 .mission
                 .map(|mission| Judge::new(mission, completion, control_period)),
             spread: Spread::new(layout.rumors, layout.robots),
+            notes: Notes::default(),
             everyone_knows: (rumors > 0).then(|| Hearing::new(rumors, completion, control_period)),
             connectivity: Vec::new(),
             series: Series::new(config.series_every),
@@ -204,6 +207,8 @@ impl Recorder {
             Note::Role(role) => self.traffic.enter(robot, role),
             Note::Duplicate { topic, size } => self.traffic.duplicate(robot, topic, size),
             Note::Informed { rumor, at } => self.spread.inform(robot, rumor, at),
+            Note::Count { name, n } => self.notes.count(robot, name, n),
+            Note::Value { name, value } => self.notes.value(robot, name, value),
             _ => {}
         }
         self.reports.note(robot, note);
@@ -224,9 +229,9 @@ impl Recorder {
         }
     }
 
-    /// `sender` sent a status, its frame number `sequence`.
-    pub fn status_sent(&mut self, now: SimTime, sender: ActorId, sequence: u32) {
-        self.detection.sent(now, sender, sequence);
+    /// `sender` sent a status, its frame number `sequence`: to one robot alone, or to all in range.
+    pub fn status_sent(&mut self, now: SimTime, sender: ActorId, sequence: u32, to: Option<ActorId>) {
+        self.detection.sent(now, sender, sequence, to);
         if let Some(trace) = self.trace_of(sender) {
             trace.sent(now, sequence);
         }
@@ -362,6 +367,7 @@ impl Recorder {
             faults: self.failures.into_episodes(),
             healing: self.healing.into_episodes(),
             spread: self.spread.into_records(),
+            noted: self.notes.into_records(),
             connectivity: self.connectivity,
             series: self.series.into_entries(),
             robots: robots(self.reports, end.poses, &end.robot_steps),

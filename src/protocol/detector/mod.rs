@@ -183,7 +183,7 @@ mod tests {
     use super::*;
     use crate::engine::{Span, Streams};
     use crate::protocol::control::PhaseConfig;
-    use crate::protocol::{Evidence, Frame, MessageSize, Note};
+    use crate::protocol::{Address, Evidence, Frame, Note};
     use crate::quantity::Positive;
 
     const TIMEOUT_S: f64 = 2.5;
@@ -226,7 +226,9 @@ mod tests {
                 sender: ActorId(sender),
                 sequence,
                 sent_at: SimTime::ZERO,
-                size: MessageSize::alone(4),
+                payload_bytes: 4,
+                rides: false,
+                address: Address::Everyone,
                 message: Alive,
             },
             displacement: [0.0; 2],

@@ -10,8 +10,9 @@ use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
 use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
 use desim::metrics::{
-    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Outcome, RobotBytes, RobotState,
-    RumorSpread, SeriesEntry, TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Volume,
+    Amount, ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Noted, Outcome, RobotBytes,
+    RobotState, RumorSpread, SeriesEntry, TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Values,
+    Volume,
 };
 use desim::radio::LossCause;
 use desim::scenario::{Scenario, parse};
@@ -58,6 +59,7 @@ pub fn record(trial: u32) -> TrialRecord {
         faults: faults(trial),
         healing: healing(trial),
         spread: spread(trial),
+        noted: noted(trial),
         detection: detection(trial),
         trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
@@ -67,6 +69,22 @@ pub fn record(trial: u32) -> TrialRecord {
             .map(|sample| (SimTime::from_secs(sample as f64 * 5.0), places(sample)))
             .collect(),
     }
+}
+
+/// What robots count and measure in every second trial.
+fn noted(trial: u32) -> Vec<Noted> {
+    let noted = |name: &str, robot, amount| Noted {
+        name: name.to_owned(),
+        robot: ActorId(robot),
+        amount,
+    };
+    let values = Values::restored(9.0, -1.5, 5.0, [(-1.5, 1), (0.0, 2), (2.0, 1), (5.0, 2)]);
+    let all = vec![
+        noted("drops", 3, Amount::Count(7 + u64::from(trial))),
+        noted("hops", 0, Amount::Values(values)),
+        noted("hops", 4, Amount::Count(0)),
+    ];
+    if trial % 2 == 1 { all } else { Vec::new() }
 }
 
 /// Suspicions of every verdict and failures of every outcome.
@@ -89,6 +107,7 @@ fn detection(trial: u32) -> DetectionRecord {
         subject_down: number == 0,
         cause,
         missed: Missed {
+            lost: [0, 0, 0, number % 2],
             out_of_range: number,
             ..Missed::default()
         },
@@ -122,7 +141,7 @@ fn detection(trial: u32) -> DetectionRecord {
 }
 
 fn fates(topic: u64, trial: u32) -> TopicFates {
-    let lost = [15 + topic + u64::from(trial), 2, 3];
+    let lost = [15 + topic + u64::from(trial), 2, 3, 0];
     TopicFates {
         offered: 103 + topic + u64::from(trial),
         delivered: 80,
@@ -144,7 +163,7 @@ fn traffic(robot: u32, topic: u8, trial: u32) -> TrafficRow {
         sent: volume(600),
         received: volume(u64::from(4000 + 10 * robot + trial)),
         duplicate: volume(u64::from(topic) * u64::from(7 + robot + trial)),
-        lost: [robot, 0, robot % 2].map(|frames| volume(frames.into())),
+        lost: [robot, 0, robot % 2, 0].map(|frames| volume(frames.into())),
     }
 }
 

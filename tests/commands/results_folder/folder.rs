@@ -83,6 +83,7 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
         "frames.parquet",
         "healing.parquet",
         "latency.parquet",
+        "notes.parquet",
         "robots.parquet",
         "series.parquet",
         "spread.parquet",

@@ -1,6 +1,7 @@
 //! What gossip settings do to one robot: sending on change, strands that are old or have come too far, orders passed on.
 
 use super::*;
+use crate::protocol::MessageSize;
 
 fn gossip(text: &str) -> GossipConfig {
     ron::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))

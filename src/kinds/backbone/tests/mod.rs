@@ -5,7 +5,7 @@ mod healing;
 
 use super::*;
 use crate::protocol::control::PhaseConfig;
-use crate::protocol::{Frame, MessageSize, TimerId};
+use crate::protocol::{Address, Frame, TimerId};
 use rand_philox::Philox;
 
 const ROOT: u32 = 0;
@@ -76,12 +76,15 @@ impl Bench {
                 sender: ActorId(*sender),
                 sequence: self.sequence,
                 sent_at: now,
-                size: MessageSize::alone(4),
+                payload_bytes: 4,
+                rides: false,
+                address: Address::Everyone,
                 message: Rc::new(message.clone()),
             },
             displacement: [(x - self.x) as f32, -self.y as f32],
         });
         let mut input = Input {
+            me: ActorId(0),
             wake: Wake::ControlStep,
             inbox: inbox.collect(),
             pose: Pose {
@@ -371,6 +374,7 @@ fn wakes_other_than_control_steps_only_listen() {
     let mut output = Output::default();
     for wake in [Wake::Reception, Wake::Timer(TimerId(0))] {
         let mut input = Input {
+            me: ActorId(0),
             wake,
             inbox: Vec::new(),
             pose: Pose::default(),

@@ -1,7 +1,7 @@
 //! Beliefs of one observer of one subject.
 
 use super::*;
-use crate::protocol::{Frame, MessageSize, Reception};
+use crate::protocol::{Address, Frame, Reception};
 
 const OBSERVER: ActorId = ActorId(0);
 const SUBJECT: ActorId = ActorId(1);
@@ -29,7 +29,9 @@ fn status(number: u32) -> Reception<()> {
             sender: SUBJECT,
             sequence: number,
             sent_at: at(f64::from(number)),
-            size: MessageSize::alone(4),
+            payload_bytes: 4,
+            rides: false,
+            address: Address::Everyone,
             message: (),
         },
         displacement: [0.0; 2],
@@ -52,10 +54,10 @@ impl Bench {
             range: 2.0,
         };
         let mut bench = Self(Scorer::new(2, watching));
-        (0..=first).for_each(|second| bench.0.sent(at(f64::from(second)), SUBJECT, second));
+        (0..=first).for_each(|second| bench.0.sent(at(f64::from(second)), SUBJECT, second, None));
         bench.lose(met..first);
         bench.believe(f64::from(first), &Note::Watches(SUBJECT), &[status(first)]);
-        (first + 1..30).for_each(|second| bench.0.sent(at(f64::from(second)), SUBJECT, second));
+        (first + 1..30).for_each(|second| bench.0.sent(at(f64::from(second)), SUBJECT, second, None));
         bench
     }
 

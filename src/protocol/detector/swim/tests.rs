@@ -3,7 +3,7 @@
 use super::*;
 use crate::engine::Streams;
 use crate::protocol::control::PhaseConfig;
-use crate::protocol::{Frame, MessageSize, Note};
+use crate::protocol::{Address, Frame, Note};
 use crate::quantity::{NonNegative, Positive};
 
 const ME: ActorId = ActorId(0);
@@ -97,7 +97,9 @@ impl Bench {
                 sender,
                 sequence: self.sequence,
                 sent_at: at(seconds),
-                size: MessageSize::alone(4),
+                payload_bytes: 4,
+                rides: false,
+                address: Address::Everyone,
                 message,
             },
             displacement: [0.0; 2],

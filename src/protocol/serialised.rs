@@ -1,0 +1,124 @@
+//! A codec for protocols that do not write their own.
+
+use std::marker::PhantomData;
+
+use bytes::{Buf, BufMut, BytesMut};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use tokio_util::codec::{Decoder, Encoder};
+
+use super::CodecError;
+
+/// Writes and reads any message that serde does, in the format of postcard: no field names, whole numbers of seven bits a byte,
+/// so that a small number costs one. `type Codec = Serialised<Message>` is all that a protocol says.
+///
+/// A message of which the wire format is part of the question has a codec of its own: bytes by hand may be fewer.
+#[derive(Debug)]
+pub struct Serialised<M>(PhantomData<fn(M) -> M>);
+
+impl<M> Default for Serialised<M> {
+    fn default() -> Self {
+        Self(PhantomData)
+    }
+}
+
+impl<M: Serialize> Encoder<M> for Serialised<M> {
+    type Error = CodecError;
+
+    fn encode(&mut self, message: M, bytes: &mut BytesMut) -> Result<(), CodecError> {
+        let mut writer = std::mem::take(bytes).writer();
+        let written = postcard::to_io(&message, &mut writer).map(|_| ());
+        *bytes = writer.into_inner();
+        Ok(written?)
+    }
+}
+
+impl<M: DeserializeOwned> Decoder for Serialised<M> {
+    type Item = M;
+    type Error = CodecError;
+
+    fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<M>, CodecError> {
+        let length = bytes.len();
+        let (message, rest) = postcard::take_from_bytes(bytes).map_err(|error| match error {
+            postcard::Error::DeserializeUnexpectedEnd => CodecError::Truncated(length),
+            other => CodecError::Serialised(other),
+        })?;
+        let read = length - rest.len();
+        bytes.advance(read);
+        Ok(Some(message))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    enum Message {
+        Beacon { hops: u8, at: (f32, f32) },
+        Names(Vec<String>),
+        Nothing,
+    }
+
+    fn messages() -> impl Strategy<Value = Message> {
+        prop_oneof![
+            (any::<u8>(), -1e9_f32..1e9, -1e9_f32..1e9).prop_map(|(hops, x, y)| Message::Beacon { hops, at: (x, y) }),
+            prop::collection::vec(".{0,9}", 0..4).prop_map(Message::Names),
+            Just(Message::Nothing),
+        ]
+    }
+
+    fn encoded(message: &Message) -> BytesMut {
+        let mut bytes = BytesMut::new();
+        Serialised::default()
+            .encode(message.clone(), &mut bytes)
+            .expect("it can be written");
+        bytes
+    }
+
+    proptest! {
+        #[test]
+        fn a_message_comes_back_and_leaves_nothing(message in messages()) {
+            let mut bytes = encoded(&message);
+            prop_assert_eq!(Serialised::default().decode(&mut bytes).unwrap(), Some(message));
+            prop_assert!(bytes.is_empty());
+        }
+
+        #[test]
+        fn bytes_that_end_too_early_are_an_error(message in messages(), cut in any::<prop::sample::Index>()) {
+            let mut bytes = encoded(&message);
+            let kept = cut.index(bytes.len());
+            bytes.truncate(kept);
+            let read = Serialised::<Message>::default().decode(&mut bytes);
+            prop_assert!(matches!(read, Err(CodecError::Truncated(length)) if length == kept), "{:?}", read);
+        }
+
+        #[test]
+        fn bytes_beyond_the_message_are_left(message in messages(), more in prop::collection::vec(any::<u8>(), 1..5)) {
+            let mut bytes = encoded(&message);
+            bytes.extend_from_slice(&more);
+            prop_assert_eq!(Serialised::default().decode(&mut bytes).unwrap(), Some(message));
+            prop_assert_eq!(&bytes[..], &more[..]);
+        }
+    }
+
+    #[test]
+    fn the_bytes_are_those_of_the_format() {
+        let beacon = Message::Beacon {
+            hops: 200,
+            at: (1.0, -2.0),
+        };
+        assert_eq!(encoded(&beacon)[..], [0, 200, 0, 0, 0x80, 0x3f, 0, 0, 0, 0xc0]);
+        assert_eq!(encoded(&Message::Names(vec!["ab".into()]))[..], [1, 1, 2, b'a', b'b']);
+        assert_eq!(encoded(&Message::Nothing)[..], [2]);
+    }
+
+    #[test]
+    fn a_variant_that_does_not_exist_is_an_error() {
+        let read = Serialised::<Message>::default().decode(&mut BytesMut::from(&[9][..]));
+        assert!(matches!(read, Err(CodecError::Serialised(_))), "{read:?}");
+    }
+}
