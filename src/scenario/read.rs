@@ -7,7 +7,6 @@ use std::sync::Arc;
 use ron::error::{Error, SpannedError};
 use ron::extensions::Extensions;
 
-use super::checks::Problem;
 use super::document::Document;
 use super::explain::{Finding, explain, nearest};
 use super::overrides::Override;
@@ -17,6 +16,7 @@ use super::source::{Source, blank};
 use super::token::{Faults, Span};
 use super::tree::{self, MAX_DEPTH};
 use super::{Scenario, limits};
+use crate::kind::{Problem, RonReader};
 
 /// How scenario files are read and written: variants hold their fields without a second pair of brackets.
 pub fn options() -> ron::Options {
@@ -54,6 +54,14 @@ pub(super) fn document<D: Document>(name: &str, text: &str, overrides: &[Overrid
 
 /// What serde makes of `text`.
 pub(super) fn typed<D: Document>(text: &str) -> Result<D, Box<Failure>> {
+    typed_by(text, |reader| D::deserialize(reader)).map_err(|failure| D::nearer(failure, text))
+}
+
+/// What `read` makes of `text`.
+pub(super) fn typed_by<T>(
+    text: &str,
+    read: impl FnOnce(RonReader<'_, '_, '_, '_>) -> Result<T, Error>,
+) -> Result<T, Box<Failure>> {
     let at_start = |error: SpannedError| {
         Box::new(Failure {
             error,
@@ -63,7 +71,7 @@ pub(super) fn typed<D: Document>(text: &str) -> Result<D, Box<Failure>> {
     };
     let mut reader = ron::Deserializer::from_str_with_options(text, &options()).map_err(at_start)?;
     let mut track = serde_path_to_error::Track::new();
-    let read = D::deserialize(serde_path_to_error::Deserializer::new(&mut reader, &mut track));
+    let read = read(serde_path_to_error::Deserializer::new(&mut reader, &mut track));
     let read = read.and_then(|document| reader.end().map(|()| document));
     read.map_err(|code| {
         let path = track.path();
@@ -79,7 +87,7 @@ pub(super) fn typed<D: Document>(text: &str) -> Result<D, Box<Failure>> {
 /// An error of serde, with the path that it had reached.
 pub(super) struct Failure {
     pub(super) error: SpannedError,
-    path: FieldPath,
+    pub(super) path: FieldPath,
     /// Whether the path is known to its last step.
     whole: bool,
 }
@@ -172,7 +180,7 @@ impl<'a, D: Document> Reader<'a, D> {
             return None;
         }
         if let (Error::MissingStructField { field, .. }, None) = (&failure.error.code, field) {
-            let (_, stand_in) = D::STAND_INS.iter().find(|(name, _)| name == field)?;
+            let stand_in = D::stand_in(field)?;
             blanked.push(finding_path);
             let group = root.group?;
             let comma = if group.items.last().is_some_and(|last| !last.comma) {
@@ -219,7 +227,8 @@ impl<'a, D: Document> Reader<'a, D> {
         };
         let stands = |path: &FieldPath| follow(&root, path, &text).steps == path.0.len();
         let caused = |problem: &Problem| {
-            problem.involved().any(|path| {
+            problem.involved().map(FieldPath::of).any(|path| {
+                let path = &path;
                 // A field that the file leaves out may be the one that is misspelt beside it.
                 let misspelt = |left_out: &FieldPath| !stands(path) && left_out.parent() == path.parent();
                 let touches = |left_out: &FieldPath| left_out.holds(path) || path.holds(left_out);
@@ -294,25 +303,26 @@ fn stands_for(blanked: &FieldPath, missing: &FieldPath) -> bool {
 
 /// Places a problem at its field, or where that is left out, at another that it depends on, or at what is around it.
 pub(super) fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
-    let stands = |path: &&FieldPath| {
+    let stands = |path: &FieldPath| {
         let place = follow(root, path, text);
         place.steps == path.0.len()
     };
-    let path = problem.involved().find(stands);
-    let place = follow(root, path.unwrap_or(&problem.path), text);
-    let (span, label) = match (path, place.field) {
+    let changed = FieldPath::of(&problem.path);
+    let path = problem.involved().map(FieldPath::of).find(stands);
+    let place = follow(root, path.as_ref().unwrap_or(&changed), text);
+    let (span, label) = match (&path, place.field) {
         (Some(_), _) if place.node.group.is_none() => (place.node.span.clone(), "here".to_owned()),
         (None, Some(field)) => {
             let key = field.key.clone().unwrap_or_else(|| head(place.node));
-            (key, format!("leaves `{}` at its default", problem.path))
+            (key, format!("leaves `{changed}` at its default"))
         }
-        (None, None) => (head(place.node), format!("leaves `{}` at its default", problem.path)),
+        (None, None) => (head(place.node), format!("leaves `{changed}` at its default")),
         (Some(_), _) => (head(place.node), "here".to_owned()),
     };
     Finding {
         message: problem.message,
         help: problem.help,
-        path: problem.path,
+        path: changed,
         span,
         label,
     }

@@ -290,7 +290,7 @@ impl BackboneConfig {
     /// What is wrong with these settings together, for `robots` robots that hear each other up to `radio_range` metres:
     /// the field at fault and what would be right.
     #[must_use]
-    pub fn problems(&self, robots: u32, radio_range: f64) -> Vec<(String, String)> {
+    pub fn own_problems(&self, robots: u32, radio_range: f64) -> Vec<(String, String)> {
         let mut problems = self.distance_problems(radio_range);
         problems.extend(self.target_problems(robots));
         problems
@@ -403,7 +403,7 @@ mod tests {
 
     #[test]
     fn the_papers_settings_have_no_problem() {
-        assert_eq!(ring(4, 2).problems(40, 2.0), []);
+        assert_eq!(ring(4, 2).own_problems(40, 2.0), []);
     }
 
     #[test]
@@ -413,7 +413,7 @@ mod tests {
         config.motion.backbone_avoidance_range = NonNegative::new(1.0);
         config.recruiting.distance_ratio = Positive::new(1.1);
         config.motion.taut_ratio = Probability::new(1.0);
-        let problems = config.problems(4, 1.5);
+        let problems = config.own_problems(4, 1.5);
         let fields: Vec<&str> = problems.iter().map(|(field, _)| field.as_str()).collect();
         assert_eq!(
             fields,
@@ -427,8 +427,8 @@ mod tests {
                 "targets",
             ]
         );
-        assert_eq!(ring(0, 1).problems(40, 2.0).len(), 1);
-        assert_eq!(ring(64, 4).problems(400, 2.0).len(), 1);
-        assert_eq!(ring(4, 1).problems(70_000, 2.0).len(), 1);
+        assert_eq!(ring(0, 1).own_problems(40, 2.0).len(), 1);
+        assert_eq!(ring(64, 4).own_problems(400, 2.0).len(), 1);
+        assert_eq!(ring(4, 1).own_problems(70_000, 2.0).len(), 1);
     }
 }

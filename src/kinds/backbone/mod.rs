@@ -1,6 +1,7 @@
 //! The failure-tolerant connectivity backbone (paper section 4): robots build chains of relays from a root to workers
 //! that visit targets, as many chains to a target as it needs.
 
+mod checks;
 mod codec;
 mod config;
 mod duty;
@@ -8,6 +9,7 @@ mod forces;
 mod free;
 mod heal;
 mod isolated;
+mod kind;
 mod lines;
 mod message;
 mod mission;

@@ -1,20 +1,20 @@
 //! The figures that a study compares: those that all of its settings have.
 
 use super::Plan;
+use crate::kind::Problem;
 use crate::metrics::figures::Registry;
-use crate::scenario::ProtocolConfig;
-use crate::scenario::checks::Problem;
+use crate::scenario::Scenario;
 use crate::scenario::explain::nearest;
 
 /// Keys of the figures that every setting has.
 pub fn common(plan: &Plan) -> Vec<String> {
-    let of = |protocol: &ProtocolConfig| -> Vec<String> {
-        let registry = Registry::of(protocol.topics());
+    let of = |scenario: &Scenario| -> Vec<String> {
+        let registry = Registry::of(scenario.protocol.all_topics());
         registry.figures().map(|figure| figure.key.clone()).collect()
     };
     let mut known: Option<Vec<String>> = None;
     for setting in &plan.settings {
-        let has = of(&setting.scenario.protocol);
+        let has = of(&setting.scenario);
         known = Some(match known {
             None => has,
             Some(known) => known.into_iter().filter(|key| has.contains(key)).collect(),
@@ -25,9 +25,9 @@ pub fn common(plan: &Plan) -> Vec<String> {
 
 /// What two scenarios are compared by where nobody says: what the mission takes, what it costs, what arrives, who is mistaken.
 pub fn usual(plan: &Plan) -> Vec<String> {
-    let all = |has: fn(&ProtocolConfig) -> bool| plan.settings.iter().all(|setting| has(&setting.scenario.protocol));
-    let mission = all(|protocol| !matches!(protocol, ProtocolConfig::Heartbeat));
-    let detector = all(|protocol| !matches!(protocol, ProtocolConfig::Rumor(_)));
+    let all = |has: fn(&Scenario) -> bool| plan.settings.iter().all(|setting| has(&setting.scenario));
+    let mission = all(|scenario| scenario.protocol.mission().is_some());
+    let detector = all(Scenario::runs_detector);
     let keys = [
         ("steps_to_completion", mission),
         ("bandwidth.tx_bytes_per_step.mean", true),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::design::{combinations, is_name, labels, name};
 use super::{Study, figures};
-use crate::scenario::checks::Problem;
+use crate::kind::Problem;
 use crate::scenario::file::{contents, question};
 use crate::scenario::path::{FieldPath, follow};
 use crate::scenario::read::{between, document};
@@ -317,7 +317,7 @@ impl File<'_> {
     }
 
     fn diagnose(&self, problem: Problem) -> Diagnostic {
-        let path = Some(problem.path.to_string());
+        let path = Some(problem.path.clone());
         let Some(root) = tree::read(&self.text).0 else {
             return Diagnostic {
                 message: problem.message,
