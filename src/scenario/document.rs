@@ -5,8 +5,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::checks::problems;
-use super::read::Failure;
 use super::shape::Shape;
+use super::typed::Failure;
 use super::{Scenario, Study, protocol, to_ron};
 use crate::kind::Problem;
 use crate::kinds;

@@ -17,6 +17,7 @@ mod gossip;
 mod limits;
 mod lines;
 mod needs;
+mod node;
 mod overrides;
 mod path;
 mod protocol;
@@ -25,12 +26,15 @@ mod report;
 mod shape;
 mod source;
 mod study;
+mod swallow;
 mod token;
 mod tree;
+mod typed;
 mod warnings;
+mod write;
 
 pub use crate::text::Style;
-pub use file::{contents, json_schema, load, question, to_ron};
+pub use file::{contents, load, question};
 pub use overrides::Override;
 pub use protocol::ProtocolConfig;
 pub use read::{examine, parse};
@@ -39,6 +43,7 @@ pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,
 };
+pub use write::{json_schema, to_ron};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

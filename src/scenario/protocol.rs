@@ -15,8 +15,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
 use super::path::{FieldPath, Step, follow};
-use super::read::{Failure, typed_by};
 use super::tree;
+use super::typed::{Failure, typed_by};
 use crate::kind::{AnyKind, Entry, Kind};
 use crate::kinds;
 

@@ -4,8 +4,7 @@
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use ron::error::{Error, SpannedError};
-use ron::extensions::Extensions;
+use ron::error::Error;
 
 use super::document::Document;
 use super::explain::{Finding, explain, nearest};
@@ -14,16 +13,10 @@ use super::path::{FieldPath, Step, field_at, follow, head, path_at};
 use super::report::{Diagnostic, Place, Report, Warnings};
 use super::source::{Source, blank};
 use super::token::{Faults, Span};
-use super::tree::{self, MAX_DEPTH};
+use super::tree;
+use super::typed::{Failure, typed_by};
 use super::{Scenario, limits};
-use crate::kind::{Problem, RonReader};
-
-/// How scenario files are read and written: variants hold their fields without a second pair of brackets.
-pub fn options() -> ron::Options {
-    ron::Options::default()
-        .with_default_extension(Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME)
-        .with_recursion_limit(MAX_DEPTH)
-}
+use crate::kind::Problem;
 
 /// Reads the scenario in `text`, the contents of the file `name`, with `overrides` worked in, in order.
 ///
@@ -55,41 +48,6 @@ pub(super) fn document<D: Document>(name: &str, text: &str, overrides: &[Overrid
 /// What serde makes of `text`.
 pub(super) fn typed<D: Document>(text: &str) -> Result<D, Box<Failure>> {
     typed_by(text, |reader| D::deserialize(reader)).map_err(|failure| D::nearer(failure, text))
-}
-
-/// What `read` makes of `text`.
-pub(super) fn typed_by<T>(
-    text: &str,
-    read: impl FnOnce(RonReader<'_, '_, '_, '_>) -> Result<T, Error>,
-) -> Result<T, Box<Failure>> {
-    let at_start = |error: SpannedError| {
-        Box::new(Failure {
-            error,
-            path: FieldPath::default(),
-            whole: true,
-        })
-    };
-    let mut reader = ron::Deserializer::from_str_with_options(text, &options()).map_err(at_start)?;
-    let mut track = serde_path_to_error::Track::new();
-    let read = read(serde_path_to_error::Deserializer::new(&mut reader, &mut track));
-    let read = read.and_then(|document| reader.end().map(|()| document));
-    read.map_err(|code| {
-        let path = track.path();
-        let unknown = |segment: &_| matches!(segment, serde_path_to_error::Segment::Unknown);
-        Box::new(Failure {
-            error: reader.span_error(code),
-            path: FieldPath::reached(&path),
-            whole: !path.iter().any(unknown),
-        })
-    })
-}
-
-/// An error of serde, with the path that it had reached.
-pub(super) struct Failure {
-    pub(super) error: SpannedError,
-    pub(super) path: FieldPath,
-    /// Whether the path is known to its last step.
-    whole: bool,
 }
 
 /// How a text is changed so that the rest of it can be read. What stands before it keeps its place.
@@ -163,7 +121,14 @@ impl<'a, D: Document> Reader<'a, D> {
             self.form(&faults, text);
             return None;
         };
-        let finding = explain::<D>(&failure.error, &failure.path, failure.whole, &root, text);
+        let finding = explain(
+            &failure.error,
+            &failure.path,
+            failure.whole,
+            &root,
+            text,
+            (D::KIND, D::shape()),
+        );
         let missing = matches!(failure.error.code, Error::MissingStructField { .. });
         let field = if missing {
             follow(&root, &failure.path, text).field

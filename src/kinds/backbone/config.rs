@@ -8,7 +8,7 @@ use crate::geometry::{Vec2, unit};
 use crate::protocol::CompletionConfig;
 use crate::quantity::{Finite, NonNegative, Positive, Probability};
 
-use super::mission::relays_needed;
+use super::relays::relays_needed;
 
 /// Most chains that a status can name: its target chain is one byte, and 0 means none.
 const MOST_CHAINS: usize = 255;

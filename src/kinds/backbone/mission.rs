@@ -1,12 +1,13 @@
 //! What every robot is given before the start: the targets, the root, the workers, and the settings in working units.
 
 use crate::engine::{ActorId, Span, Streams};
-use crate::geometry::{Pose, Vec2, at_least, direction};
+use crate::geometry::{Pose, Vec2, direction};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::{GossipConfig, Repetition, RetransmitConfig, TimeToLiveConfig, Turns};
 
 use super::config::BackboneConfig;
+use super::relays::relays_needed;
 use super::sidestep::Patience;
 
 /// The mission: the same for all robots, and known to all from the start (paper section 4.1).
@@ -228,13 +229,6 @@ fn parallel_chains(config: &BackboneConfig, target: u8, displacement: Vec2, link
             lane: (f64::from(link) - gaps / 2.0) * spacing,
         }
     })
-}
-
-/// The fewest relays that bring a worker within `threshold` of a target `distance` away in hops of at most `safe`.
-#[must_use]
-pub fn relays_needed(distance: f64, threshold: f64, safe: f64) -> usize {
-    let hops = at_least((distance - threshold) / safe).ceil();
-    (hops as usize).saturating_sub(1)
 }
 
 impl Parameters {

@@ -1,6 +1,7 @@
 //! The failure-tolerant connectivity backbone (paper section 4): robots build chains of relays from a root to workers
 //! that visit targets, as many chains to a target as it needs.
 
+mod change;
 mod checks;
 mod codec;
 mod config;
@@ -16,6 +17,7 @@ mod mission;
 mod neighbours;
 mod networker;
 mod recruit;
+mod relays;
 mod requests;
 mod root;
 mod said;

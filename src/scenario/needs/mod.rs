@@ -19,15 +19,10 @@ const ROBOT: f64 = 4000.0;
 const PAIR: f64 = 200.0;
 /// Of a copy under way.
 const COPY: f64 = 140.0;
-/// Of a status sent lately, and of a lost copy of it, in lists that double.
-const STATUS: f64 = 32.0;
-const LOST: f64 = 16.0;
 /// Of an interval that φ-accrual remembers.
 const INTERVAL: f64 = 16.0;
-/// Of a suspicion, a failed robot at an observer, a failure.
+/// Of a suspicion.
 const SUSPICION: f64 = 900.0;
-const OBSERVED: f64 = 250.0;
-const FAILURE: f64 = 1500.0;
 /// Of a sample, of a position in it, of an entry of the series, and of a topic in that.
 const SAMPLE: f64 = 450.0;
 const POSITION: f64 = 100.0;

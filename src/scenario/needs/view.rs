@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use super::super::Scenario;
-use super::{FAILURE, LOST, OBSERVED, STATUS};
 use crate::engine::Span;
 use crate::faults::{LastsConfig, WhenConfig};
 use crate::motion::DeployConfig;
@@ -12,6 +11,13 @@ use crate::protocol::control::WakeConfig;
 use crate::protocol::detector::DetectorConfig;
 use crate::quantity::{Finite, Probability};
 use crate::radio::{LossChain, LossConfig};
+
+/// Of a status sent lately, and of a lost copy of it, in lists that double.
+const STATUS: f64 = 32.0;
+const LOST: f64 = 16.0;
+/// Of a failed robot at an observer, and of a failure.
+const OBSERVED: f64 = 250.0;
+const FAILURE: f64 = 1500.0;
 
 /// What several of these bounds need to know.
 pub struct View<'a> {
