@@ -13,36 +13,65 @@
 //!
 //! # Assemble and run
 //!
-//! [`simulation::Setup`] is the world: arena, motion, radio, what is measured. Here two robots of the shipped
-//! [`heartbeat`](kinds::heartbeat) protocol stand a metre apart on a radio that loses half of what is said:
+//! [`simulation::Setup`] is the world: arena, motion, radio, what is measured. Here two robots that say one byte at each control step
+//! stand a metre apart on a radio that loses half of what is said:
 //!
 //! ```
-//! use std::rc::Rc;
-//!
-//! use desim::engine::{ActorId, Span};
+//! use desim::engine::{SimTime, Span};
 //! use desim::geometry::{Pose, Vec2};
 //! use desim::protocol::control::PhaseConfig;
-//! use desim::kinds::heartbeat::{Heartbeat, Settings};
+//! use desim::protocol::{Input, Output, Protocol, Wake};
 //! use desim::quantity::Probability;
 //! use desim::radio::LossConfig;
 //! use desim::simulation::{DriverKind, Setup};
+//! # use bytes::BytesMut;
+//! # use desim::protocol::CodecError;
+//! # use tokio_util::codec::{Decoder, Encoder};
+//! # #[derive(Default)]
+//! # struct Byte;
+//! # impl Encoder<u8> for Byte {
+//! #     type Error = CodecError;
+//! #     fn encode(&mut self, byte: u8, bytes: &mut BytesMut) -> Result<(), CodecError> {
+//! #         bytes.extend_from_slice(&[byte]);
+//! #         Ok(())
+//! #     }
+//! # }
+//! # impl Decoder for Byte {
+//! #     type Item = u8;
+//! #     type Error = CodecError;
+//! #     fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<u8>, CodecError> {
+//! #         Ok((!bytes.is_empty()).then(|| bytes.split_to(1)[0]))
+//! #     }
+//! # }
+//!
+//! struct Beeper;
+//!
+//! impl Protocol for Beeper {
+//!     type Message = u8;
+//!     type Heard = u8;
+//!     type Codec = Byte; // one byte, as it is
+//!     const TOPICS: &'static [&'static str] = &["beep"];
+//!     const ROLES: &'static [&'static str] = &["robot"];
+//!
+//!     fn step(&mut self, _now: SimTime, input: &mut Input<u8>, output: &mut Output<u8>) {
+//!         if input.wake == Wake::ControlStep {
+//!             output.broadcasts.push(7);
+//!         }
+//!     }
+//! }
 //!
 //! let mut setup = Setup::lasting(Span::from_secs(60.0));
 //! setup.radio.loss = LossConfig::Bernoulli(Probability::new(0.5));
+//! setup.control.phase = PhaseConfig::Together;
 //!
 //! let places = [Vec2::new(0.0, 0.0), Vec2::new(1.0, 0.0)];
 //! let poses = places.map(|position| Pose { position, heading: 0.0 }).to_vec();
-//! setup.control.phase = PhaseConfig::Together;
-//! let settings = Settings::new(&Default::default(), &Default::default(), &setup.control, poses.len(), setup.streams());
-//! let settings = Rc::new(settings);
-//! let robots: Vec<Heartbeat> = (0..2).map(|id| Heartbeat::new(ActorId(id), settings.clone())).collect();
-//!
-//! let record = setup.run(poses, robots, DriverKind::Actors, &Default::default())?;
+//! let record = setup.run(poses, vec![Beeper, Beeper], DriverKind::Actors, &Default::default())?;
 //!
 //! // 601 control steps from 0 to 60 s, two robots, one listener each.
-//! let status = &record.ledger[0];
-//! assert_eq!(status.offered, 1202);
-//! assert_eq!(status.offered, status.delivered + status.lost[0] + status.in_flight);
+//! let beeps = &record.ledger[0];
+//! assert_eq!(beeps.offered, 1202);
+//! assert_eq!(beeps.offered, beeps.delivered + beeps.lost[0] + beeps.in_flight);
 //! # Ok::<(), desim::simulation::RunError>(())
 //! ```
 //!
@@ -66,7 +95,7 @@
 //! # The floors
 //!
 //! [`engine`], [`geometry`], [`quantity`], [`statistics`] and [`text`] know no robots; [`radio`], [`motion`], [`protocol`] and [`faults`] are pure
-//! models that do not know each other; [`kinds`] are protocols; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
+//! models that do not know each other; a [`kind`] is a protocol that a scenario can name, and [`kinds`] are those that it can; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
 //! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
 
 pub mod cli;
@@ -75,6 +104,7 @@ pub mod experiment;
 pub mod export;
 pub mod faults;
 pub mod geometry;
+pub mod kind;
 pub mod kinds;
 pub mod metrics;
 pub mod motion;

@@ -1,8 +1,7 @@
-//! The `desim` command.
+//! The `desim` command, with the kinds of protocols that desim ships.
 
 use std::process::ExitCode;
 
-use desim::cli::{self, log};
 use mimalloc::MiMalloc;
 
 /// Of a swarm of tens of thousands the memory lies in huge pages, which takes a sixth off a delivery.
@@ -10,11 +9,5 @@ use mimalloc::MiMalloc;
 static ALLOCATOR: MiMalloc = MiMalloc;
 
 fn main() -> ExitCode {
-    match cli::arguments(std::env::args_os()) {
-        Ok(arguments) => {
-            log::to_stderr();
-            cli::exit(cli::run(arguments.command))
-        }
-        Err(status) => status,
-    }
+    desim::cli::main()
 }

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use desim::experiment::run_trial;
 use desim::scenario::load;
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 use crate::workload::Counts;

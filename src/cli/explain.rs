@@ -11,11 +11,11 @@ use super::interrupt;
 use super::output;
 use super::shown::Format;
 use crate::engine::ActorId;
+use crate::experiment::trace_trial;
 use crate::export::{self, Contents, Folder, FolderError, Manifest};
 use crate::metrics::TrialRecord;
 use crate::report::Explanation;
 use crate::scenario::{Scenario, parse, to_ron};
-use crate::simulation::trace_trial;
 use crate::text::shown;
 
 /// What `desim explain --help` says.

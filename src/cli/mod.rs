@@ -1,4 +1,14 @@
 //! The command line: the only place that prints and the only exit code.
+//!
+//! [`main`] is the whole command. A program of one's own becomes it, with a protocol of its own beside those that desim
+//! ships, in two lines:
+//!
+//! ```no_run
+//! # fn with<Flood: desim::kind::Kind>() -> std::process::ExitCode {
+//! desim::kinds::add::<Flood>();
+//! desim::cli::main()
+//! # }
+//! ```
 
 pub mod check;
 pub mod compare;
@@ -32,6 +42,18 @@ use scenario::ScenarioArguments;
 use shown::Format;
 
 use crate::text::clean_lines;
+
+/// The command: reads the program's arguments, does what they ask for, and answers the exit status.
+#[must_use]
+pub fn main() -> ExitCode {
+    match arguments(std::env::args_os()) {
+        Ok(arguments) => {
+            log::to_stderr();
+            exit(run(arguments.command))
+        }
+        Err(status) => status,
+    }
+}
 
 /// What the user asks for.
 #[derive(Debug, Parser)]

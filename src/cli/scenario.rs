@@ -14,10 +14,11 @@ use super::output::say;
 use super::progress::Progress;
 use super::shown::{Finished, Format};
 use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
+use crate::experiment::{TrialError, run_trial};
 use crate::export::{self, Contents, Folder, FolderError, Manifest, Pictures};
 use crate::metrics::Summary;
 use crate::scenario::{Scenario, contents, examine, is_study, question};
-use crate::simulation::{DriverKind, TrialError, run_trial};
+use crate::simulation::DriverKind;
 use crate::text::shown;
 
 /// What `desim scenario --help` says.

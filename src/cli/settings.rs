@@ -10,12 +10,13 @@ use super::interrupt;
 use super::progress::Progress;
 use super::scenario::{failure, threads};
 use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
+use crate::experiment::{TrialError, run_trial};
 use crate::export::{self, Contents, Folder, Manifest, Pictures, StudyFolder, StudyManifest};
 use crate::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials, widest};
 use crate::metrics::figures::{Figure, Registry, Sample, pool};
 use crate::report;
 use crate::scenario::{Plan, Scenario, Setting};
-use crate::simulation::{DriverKind, TrialError, run_trial};
+use crate::simulation::DriverKind;
 use crate::text::shown;
 
 /// The settings of a study, ready to run.
@@ -56,7 +57,7 @@ impl<'a> Settings<'a> {
         let registries: Vec<Registry> = plan
             .settings
             .iter()
-            .map(|setting| Registry::of(setting.scenario.protocol.topics()))
+            .map(|setting| Registry::of(setting.scenario.protocol.all_topics()))
             .collect();
         let figures = common(&registries);
         let compared = study.comparison(manifest)?;

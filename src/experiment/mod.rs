@@ -6,6 +6,9 @@
 
 mod parts;
 mod run;
+mod trial;
 
+pub use crate::kind::TrialError;
 pub use parts::{FinishedTrial, Parts, PartsError};
 pub use run::{Ending, Experiment, ExperimentError, Pool};
+pub use trial::{run_trial, trace_trial};

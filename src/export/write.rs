@@ -10,7 +10,7 @@ use super::place::{FolderError, failed, json};
 use super::tables::Tables;
 use crate::experiment::{FinishedTrial, Parts, PartsError};
 use crate::metrics::{Summary, TrialRecord};
-use crate::scenario::{ProtocolConfig, Scenario};
+use crate::scenario::Scenario;
 
 /// Of which trials to draw pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -126,23 +126,24 @@ fn entry(part: &FinishedTrial) -> TrialEntry {
 
 /// What the scenario's protocol calls its topics and roles.
 fn names(scenario: &Scenario) -> Names {
-    match &scenario.protocol {
-        ProtocolConfig::Backbone(_) => Names::of::<crate::kinds::backbone::Backbone>(&scenario.detector),
-        ProtocolConfig::Heartbeat => Names::of::<crate::kinds::heartbeat::Heartbeat>(&scenario.detector),
-        ProtocolConfig::Rumor(_) => Names::of::<crate::kinds::rumor::Rumor>(&scenario.detector),
+    Names {
+        topics: scenario.topics(),
+        roles: scenario.protocol.roles(),
     }
 }
 
 /// What stands still in the scenario's pictures.
 fn scene(scenario: &Scenario) -> Scene {
+    let targets = scenario
+        .protocol
+        .targets()
+        .into_iter()
+        .flat_map(|targets| targets.places);
     Scene {
         name: scenario.name.clone(),
         arena: scenario.arena.clone(),
         range: scenario.radio.range.get(),
-        targets: match &scenario.protocol {
-            ProtocolConfig::Backbone(config) => config.targets().into_iter().map(|(place, _)| place).collect(),
-            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => Vec::new(),
-        },
+        targets: targets.map(|(place, _)| place).collect(),
         roles: names(scenario).roles,
     }
 }

@@ -17,6 +17,8 @@ pub use compare::{Surprise, surprises};
 
 use serde::Serialize;
 
+pub use crate::kind::{Holds, Prediction, Unpredicted};
+
 use crate::scenario::Scenario;
 use scene::Scene;
 
@@ -29,53 +31,6 @@ pub struct Preflight {
     pub predictions: Vec<Prediction>,
     /// What they do not.
     pub not_predicted: Vec<Unpredicted>,
-}
-
-/// A figure expected of a run.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Prediction {
-    /// Its stable name, in the manner of `summary.json`.
-    pub name: &'static str,
-    /// What it is, in a few words.
-    pub what: &'static str,
-    /// The figure.
-    pub value: f64,
-    /// Its unit; `"1"` where it has none.
-    pub unit: &'static str,
-    /// How far off the closed form may be of what it describes, in the same unit: end effects of a run as long as the time limit,
-    /// what a formula leaves out. 0 where it is exact.
-    pub accuracy: f64,
-    /// Of what part of a run it is true.
-    pub holds: Holds,
-    /// The formula.
-    pub formula: &'static str,
-    /// What it takes for granted.
-    pub assumes: String,
-}
-
-/// Of what part of a run a prediction is true.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Holds {
-    /// Of all of it.
-    Throughout,
-    /// Of its beginning, before robots have moved.
-    AtStart,
-    /// Of robots that stay in range of each other.
-    InRange,
-    /// Of the formation that the mission ends in.
-    AtEnd,
-}
-
-/// A figure that no closed form here covers.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Unpredicted {
-    /// Its stable name.
-    pub name: &'static str,
-    /// What it is, in a few words.
-    pub what: &'static str,
-    /// Why not.
-    pub why: String,
 }
 
 impl Preflight {
@@ -113,6 +68,3 @@ impl Preflight {
         });
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,11 +1,11 @@
 //! What several predictions need to know of a scenario.
 
 use crate::engine::Span;
+use crate::kind::Expected;
 use crate::motion::Spacing;
 use crate::protocol::gossip::{SendConfig, Timing};
-use crate::protocol::wander::WanderConfig;
 use crate::radio::LossConfig;
-use crate::scenario::{ProtocolConfig, Scenario};
+use crate::scenario::Scenario;
 
 /// A scenario, looked at by one who predicts.
 pub struct Scene<'a> {
@@ -14,12 +14,12 @@ pub struct Scene<'a> {
     pub duration_s: f64,
     /// Where robots stand at the start, or why no law of it is known.
     pub spacing: Result<Spacing, &'static str>,
+    /// What the protocol's own closed forms say.
+    pub expected: Expected,
 }
 
 /// Shells that the range is cut into where a figure depends on the distance.
 const SHELLS: usize = 100;
-/// Bytes of a status, header not included: the codec's of either protocol.
-const STATUS_BYTES: f64 = 4.0;
 
 impl<'a> Scene<'a> {
     pub fn of(scenario: &'a Scenario, duration_s: f64) -> Self {
@@ -29,34 +29,35 @@ impl<'a> Scene<'a> {
             scenario,
             duration_s,
             spacing: Spacing::of(&swarm.deploy, &scenario.arena, swarm.robots, body_radius),
+            expected: scenario.protocol.predict(&scenario.sections()),
         }
     }
 
     /// Whether robots stay where they are deployed.
     pub fn stands_still(&self) -> bool {
-        match self.scenario.protocol {
-            ProtocolConfig::Backbone(_) => false,
-            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => self.scenario.wander == WanderConfig::Still,
-        }
+        !self.scenario.moves()
     }
 
     /// Why no steady stream of statuses can be counted on, if none can.
     pub fn unsteady(&self) -> Option<&'static str> {
-        match (&self.scenario.protocol, self.scenario.gossip.status.send) {
-            (ProtocolConfig::Rumor(_), _) => Some("the protocol sends no statuses"),
-            (_, SendConfig::OnChange { .. }) => {
+        let protocol = &self.scenario.protocol;
+        if !protocol.has_statuses() {
+            return Some("the protocol sends no statuses");
+        }
+        if protocol.status_bytes().is_none() {
+            return Some("the protocol does not say how long its statuses are");
+        }
+        match self.scenario.gossip.status.send {
+            SendConfig::OnChange { .. } => {
                 Some("statuses are sent when what they say changes: how often that is depends on the mission")
             }
-            (_, SendConfig::Always) => None,
+            SendConfig::Always => None,
         }
     }
 
     /// Whether robots send nothing but statuses.
     pub fn sends_statuses_alone(&self) -> bool {
-        match self.scenario.protocol {
-            ProtocolConfig::Backbone(_) | ProtocolConfig::Rumor(_) => false,
-            ProtocolConfig::Heartbeat => !self.scenario.detector.sends(),
-        }
+        self.scenario.protocol.sends_statuses_alone(&self.scenario.sections())
     }
 
     /// Length of a control step, seconds.
@@ -82,7 +83,8 @@ impl<'a> Scene<'a> {
     /// Bytes of a status, headers included.
     pub fn status_bytes(&self) -> f64 {
         let radio = &self.scenario.radio;
-        STATUS_BYTES + f64::from(radio.frame_header_bytes) + f64::from(radio.message_header_bytes)
+        let payload = self.scenario.protocol.status_bytes().unwrap_or(0.0);
+        payload + f64::from(radio.frame_header_bytes) + f64::from(radio.message_header_bytes)
     }
 
     /// Those of them that are another message's where a status is not the first in its frame.

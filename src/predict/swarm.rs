@@ -1,9 +1,8 @@
-//! How many robots hear one, and how many a mission takes.
+//! How many robots hear one, and what the protocol itself expects.
 
 use super::scene::Scene;
 use super::{Holds, Prediction, Preflight};
 use crate::motion::DeployConfig;
-use crate::scenario::ProtocolConfig;
 
 const NEIGHBOURS: &str = "neighbours";
 
@@ -30,20 +29,7 @@ pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
         }
         Err(why) => preflight.refuse("degree", NEIGHBOURS, *why),
     }
-    if let ProtocolConfig::Backbone(backbone) = &scene.scenario.protocol {
-        preflight.predictions.push(Prediction {
-            name: "robots_needed",
-            what: "robots needed",
-            value: backbone.robots_needed() as f64,
-            unit: "robots",
-            accuracy: 0.0,
-            holds: Holds::AtEnd,
-            formula: "1 + Σ (1 + links · (⌈(distance − d_δ)/d_s⌉ − 1))",
-            assumes: "a root, a worker a target, chains as short as they can be and no failure".into(),
-        });
-        let why = "chains end in straight lines, but where the free robots come to rest has no closed form";
-        preflight.refuse("degree_at_end", "neighbours at the end", why);
-    }
+    preflight.predictions.append(&mut scene.expected.predictions.clone());
 }
 
 fn law(deploy: &DeployConfig) -> (&'static str, &'static str) {

@@ -4,7 +4,6 @@ use super::scene::Scene;
 use super::{Holds, Prediction, Preflight};
 use crate::motion::Spacing;
 use crate::radio::LossConfig;
-use crate::scenario::ProtocolConfig;
 
 const LOST: &str = "copies lost";
 const RECEIVED: &str = "status bytes received";
@@ -20,16 +19,7 @@ pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
         }
         Some(why) => preflight.refuse("status_tx_bytes_per_step", "status bytes", why),
     }
-    if matches!(scene.scenario.protocol, ProtocolConfig::Rumor(_)) {
-        let why = "who passes on what depends on who knows it already";
-        preflight.refuse("rumor", "rumour bytes", why);
-    }
-    if matches!(scene.scenario.protocol, ProtocolConfig::Backbone(_)) {
-        let why = "how often robots ask, refuse and ask again depends on how chains grow";
-        preflight.refuse("request", "request bytes", why);
-        let why = "a strand has a byte for each robot of its chain so far: its size is the history of the mission";
-        preflight.refuse("strand", "strand bytes", why);
-    }
+    preflight.not_predicted.append(&mut scene.expected.unpredicted.clone());
     if scene.scenario.detector.sends() {
         let why = "how many probes are answered late, asked through others and told on depends on who is suspected";
         preflight.refuse("probe", "probe bytes", why);

@@ -163,6 +163,24 @@ impl<R: RobotRow> RobotTable<R> {
     }
 }
 
+impl<'t, R> IntoIterator for &'t RobotTable<R> {
+    type Item = &'t R;
+    type IntoIter = std::slice::Iter<'t, R>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.rows.iter()
+    }
+}
+
+impl<'t, R> IntoIterator for &'t mut RobotTable<R> {
+    type Item = &'t mut R;
+    type IntoIter = std::slice::IterMut<'t, R>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.rows.iter_mut()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;

@@ -5,7 +5,7 @@ use crate::geometry::Vec2;
 use crate::metrics::Summary;
 use crate::metrics::summary::{MissedSummary, MissedTarget};
 use crate::motion::{Reach, reach};
-use crate::scenario::{ProtocolConfig, Scenario};
+use crate::scenario::Scenario;
 
 /// What a mission asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,18 +22,14 @@ impl Asked {
     /// What the mission of `scenario` asks for, if it has targets.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Option<Self> {
-        match &scenario.protocol {
-            ProtocolConfig::Backbone(backbone) => {
-                let (places, links): (Vec<Vec2>, Vec<u8>) = backbone.targets().into_iter().unzip();
-                let (body, near) = (scenario.motion.body_radius.get(), backbone.movement_threshold.get());
-                Some(Self {
-                    links,
-                    reach: reach(&scenario.arena, body, Vec2::zeros(), &places, near),
-                    robots: backbone.robots_needed(),
-                })
-            }
-            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => None,
-        }
+        let targets = scenario.protocol.targets()?;
+        let (places, links): (Vec<Vec2>, Vec<u8>) = targets.places.into_iter().unzip();
+        let body = scenario.motion.body_radius.get();
+        Some(Self {
+            links,
+            reach: reach(&scenario.arena, body, Vec2::zeros(), &places, targets.near),
+            robots: targets.robots,
+        })
     }
 }
 

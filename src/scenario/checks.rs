@@ -2,65 +2,10 @@
 
 use crate::engine::Span;
 use crate::faults;
-use crate::kinds::backbone::Backbone;
-use crate::kinds::heartbeat::Heartbeat;
-use crate::kinds::rumor::Rumor;
-use crate::protocol::Protocol as _;
+use crate::kind::Problem;
 use crate::quantity::Positive;
 
-use super::path::FieldPath;
-use super::{ProtocolConfig, Scenario, detector, gossip, limits, needs};
-
-/// Something wrong with a scenario whose fields are each of the right form.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
-    /// The field that is best changed.
-    pub path: FieldPath,
-    /// What is wrong.
-    pub message: String,
-    /// What would be right, where the message does not say so.
-    pub help: Option<String>,
-    /// Other fields that it depends on.
-    pub also: Vec<FieldPath>,
-}
-
-impl Problem {
-    pub fn new(path: &str, message: impl Into<String>, help: impl Into<String>) -> Self {
-        Self {
-            path: FieldPath::of(path),
-            message: message.into(),
-            help: Some(help.into()),
-            also: Vec::new(),
-        }
-    }
-
-    /// A problem that a section found in itself, at a path relative to it.
-    pub(super) fn of_section(section: &str, (path, message): (String, String)) -> Self {
-        let dot = if path.is_empty() || path.starts_with('[') {
-            ""
-        } else {
-            "."
-        };
-        let path = FieldPath::of(&format!("{section}{dot}{path}"));
-        Self {
-            message: format!("`{path}`: {message}"),
-            path,
-            help: None,
-            also: Vec::new(),
-        }
-    }
-
-    /// Every field that it depends on, first the one best changed.
-    pub fn involved(&self) -> impl Iterator<Item = &FieldPath> {
-        std::iter::once(&self.path).chain(&self.also)
-    }
-
-    /// The same, depending on these fields too.
-    pub fn with(mut self, also: &[&str]) -> Self {
-        self.also = also.iter().map(|path| FieldPath::of(path)).collect();
-        self
-    }
-}
+use super::{Scenario, detector, gossip, limits, needs};
 
 /// Everything wrong with `scenario`.
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
@@ -72,6 +17,7 @@ pub fn problems(scenario: &Scenario) -> Vec<Problem> {
         found.extend(detector::problems(scenario));
         found.extend(sizes(scenario));
         found.extend(gossip::problems(scenario));
+        found.extend(scenario.protocol.conflicts(&scenario.sections()));
     }
     found.extend(name(scenario));
     found.extend(sections(scenario));
@@ -133,12 +79,8 @@ fn sections(scenario: &Scenario) -> Vec<Problem> {
         ..
     } = scenario;
     let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
-    let (protocol, roles) = match &scenario.protocol {
-        ProtocolConfig::Backbone(backbone) => (backbone.problems(swarm.robots, radio.range.get()), Backbone::ROLES),
-        ProtocolConfig::Heartbeat => (Vec::new(), <Heartbeat>::ROLES),
-        ProtocolConfig::Rumor(rumor) => (rumor.problems(swarm.robots), Rumor::ROLES),
-    };
-    let faults = faults::problems(&scenario.faults, swarm.robots, roles);
+    let protocol = scenario.protocol.problems(&scenario.sections());
+    let faults = faults::problems(&scenario.faults, swarm.robots, scenario.protocol.roles());
     let around = ["swarm.robots", "arena.size", "motion.body_radius"];
     let sections: [(_, _, &[&str]); 7] = [
         ("arena", arena.problems(), &[]),
@@ -217,18 +159,13 @@ fn times(scenario: &Scenario) -> Vec<Problem> {
         let help = "make `time_limit` longer than `control.period`";
         found.push(Problem::new("time_limit", message, help).with(&["control.period"]));
     }
-    let said = match &scenario.protocol {
-        ProtocolConfig::Backbone(backbone) => Some((backbone.completion, "targets must be held")),
-        ProtocolConfig::Rumor(rumor) => Some((rumor.completion, "rumours must be known to all")),
-        ProtocolConfig::Heartbeat => None,
-    };
-    if let Some((said, held)) = said {
+    if let Some(held) = scenario.protocol.mission() {
         if hold >= time_limit {
             let message = format!("no trial can complete: {held} for {hold} s, and a trial ends at {time_limit} s");
             let help = "make `time_limit` longer, or the hold of `protocol.completion` shorter";
             found.push(Problem::new("time_limit", message, help).with(&["metrics.hold", "protocol"]));
         }
-        if said.is_some() && scenario.metrics.hold.is_some() {
+        if scenario.protocol.completion().is_some() && scenario.metrics.hold.is_some() {
             let message = "`metrics.hold` and `protocol.completion` both say when the mission is complete";
             let help = "leave out `metrics.hold`: it is the older way to say `completion: Held(seconds)`";
             found.push(Problem::new("metrics.hold", message, help).with(&["protocol.completion"]));

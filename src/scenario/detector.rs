@@ -1,28 +1,18 @@
 //! What a failure detector needs of the rest of a scenario.
 
-use super::checks::Problem;
-use super::{ProtocolConfig, Scenario};
+use super::Scenario;
+use crate::kind::Problem;
 use crate::protocol::control::WakeConfig;
 use crate::protocol::detector::{DetectorConfig, NfdSConfig, SwimConfig};
 
 /// What is wrong with the detector among the other settings.
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
     let own = match &scenario.detector {
-        DetectorConfig::None => missing(scenario),
         DetectorConfig::NfdS(nfd_s) => freshness(scenario, nfd_s),
         DetectorConfig::Swim(swim) => answers(scenario, swim),
-        DetectorConfig::Timeout(_) | DetectorConfig::PhiAccrual(_) => None,
+        DetectorConfig::None | DetectorConfig::Timeout(_) | DetectorConfig::PhiAccrual(_) => None,
     };
     pauses(scenario).into_iter().chain(own).collect()
-}
-
-/// The backbone cannot do without.
-fn missing(scenario: &Scenario) -> Option<Problem> {
-    matches!(scenario.protocol, ProtocolConfig::Backbone(_)).then(|| {
-        let message = "the backbone needs a failure detector: robots forget neighbours that have left, and mend chains, by whom they suspect";
-        let help = "use `Timeout(4.0)` or another detector; `None` is for Heartbeat and Rumor";
-        Problem::new("detector", message, help).with(&["protocol"])
-    })
 }
 
 /// The pause from one status to the next must not be suspicious.

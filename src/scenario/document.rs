@@ -4,16 +4,26 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::checks::{Problem, problems};
+use super::checks::problems;
 use super::shape::Shape;
-use super::{Scenario, Study, to_ron};
+use super::typed::Failure;
+use super::{Scenario, Study, protocol, to_ron};
+use crate::kind::Problem;
+use crate::kinds;
 
 /// A kind of file: RON with one named struct in it.
 pub trait Document: DeserializeOwned + Serialize + JsonSchema {
     /// Name of the struct.
     const KIND: &'static str;
-    /// Fields that every such file must have, as they are read on where one is missing: nothing is reported of them.
-    const STAND_INS: &'static [(&'static str, &'static str)];
+
+    /// A field that every such file must have, as it is read on where it is missing: nothing is reported of it.
+    fn stand_in(field: &str) -> Option<String>;
+
+    /// The same failure to read `text`, or what is nearer to its cause.
+    fn nearer(failure: Box<Failure>, text: &str) -> Box<Failure> {
+        let _ = text;
+        failure
+    }
 
     /// What it may hold, field by field.
     fn shape() -> Shape<'static>;
@@ -37,12 +47,22 @@ pub trait Document: DeserializeOwned + Serialize + JsonSchema {
 
 impl Document for Scenario {
     const KIND: &'static str = "Scenario";
-    const STAND_INS: &'static [(&'static str, &'static str)] = &[
-        ("name", "name: \"scenario\""),
-        ("time_limit", "time_limit: 100.0"),
-        ("swarm", "swarm: (robots: 10, deploy: Uniform)"),
-        ("protocol", "protocol: Backbone(targets: Ring(count: 1, radius: 1.0))"),
-    ];
+
+    fn stand_in(field: &str) -> Option<String> {
+        let value = match field {
+            "name" => "\"scenario\"",
+            "time_limit" => "100.0",
+            "swarm" => "(robots: 10, deploy: Uniform)",
+            // One that is named without brackets is whole.
+            "protocol" => kinds::all().into_iter().find(|kind| kind.is_unit)?.name,
+            _ => return None,
+        };
+        Some(format!("{field}: {value}"))
+    }
+
+    fn nearer(failure: Box<Failure>, text: &str) -> Box<Failure> {
+        protocol::nearer(failure, text)
+    }
 
     fn shape() -> Shape<'static> {
         Shape::scenario()
@@ -67,15 +87,17 @@ impl Document for Scenario {
 
 impl Document for Study {
     const KIND: &'static str = "Study";
-    const STAND_INS: &'static [(&'static str, &'static str)] = &[
-        ("name", "name: \"study\""),
-        ("base", "base: \"\""),
-        (
-            "factors",
-            "factors: [(name: \"factor\", paths: [\"a\"], levels: [(values: [0]), (values: [1])])]",
-        ),
-        ("figure", "figure: \"delivery_ratio\""),
-    ];
+
+    fn stand_in(field: &str) -> Option<String> {
+        let value = match field {
+            "name" => "\"study\"",
+            "base" => "\"\"",
+            "factors" => "[(name: \"factor\", paths: [\"a\"], levels: [(values: [0]), (values: [1])])]",
+            "figure" => "\"delivery_ratio\"",
+            _ => return None,
+        };
+        Some(format!("{field}: {value}"))
+    }
 
     fn shape() -> Shape<'static> {
         Shape::study()

@@ -2,7 +2,6 @@
 
 use ron::error::{Error, Position, SpannedError};
 
-use super::document::Document;
 use super::lines::line_of;
 use super::path::{FieldPath, Step, field, follow, head, path_at};
 use super::shape::Shape;
@@ -31,21 +30,22 @@ pub struct Finding {
 }
 
 /// Explains `error`, which came up when serde had `reached` this path of `root` in `text`; `whole` is false if serde
-/// could not name the last step.
-pub fn explain<D: Document>(
+/// could not name the last step. The file holds a `kind` of that `shape`.
+pub fn explain(
     error: &SpannedError,
     reached: &FieldPath,
     whole: bool,
     root: &Node,
     text: &str,
+    (kind, shape): (&'static str, Shape<'static>),
 ) -> Finding {
     let span = bytes(text, error.span.start)..bytes(text, error.span.end);
     let reader = Reader {
         root,
         text,
         span,
-        kind: D::KIND,
-        shape: D::shape(),
+        kind,
+        shape,
     };
     match &error.code {
         Error::NoSuchStructField { expected, found, .. } => reader.unknown_field(found, expected),

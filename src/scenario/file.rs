@@ -1,14 +1,11 @@
-//! Scenario files as a whole: reading one from disk, the question that it answers, writing one, and their schema.
+//! Scenario files as a whole: reading one from disk, and the question that it answers.
 
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use ron::ser::PrettyConfig;
-use schemars::{Schema, SchemaGenerator, generate::SchemaSettings};
-
 use super::overrides::Override;
-use super::read::{options, parse};
+use super::read::parse;
 use super::report::{Diagnostic, Place, Report};
 use super::{Scenario, limits};
 
@@ -71,25 +68,6 @@ pub fn question(text: &str) -> Option<String> {
     let comment = lines.map_while(|line| line.strip_prefix("//"));
     let words: Vec<_> = comment.map(str::trim).take_while(|line| !line.is_empty()).collect();
     (!words.is_empty()).then(|| words.join(" "))
-}
-
-/// The whole scenario as the text of a scenario file, defaults included. [`parse`] reads it back to an equal one.
-///
-/// # Panics
-/// Never: every value of a scenario has a form in RON.
-#[must_use]
-pub fn to_ron(scenario: &Scenario) -> String {
-    let layout = PrettyConfig::new().compact_arrays(true);
-    let body = options().to_string_pretty(scenario, layout);
-    format!("Scenario{}\n", body.expect("a scenario holds only what RON can write"))
-}
-
-/// The JSON Schema of scenario files, for editors and other tools. RON's structs are objects, its variants objects with
-/// one key, those without fields strings, its tuples arrays.
-#[must_use]
-pub fn json_schema() -> Schema {
-    let generator: SchemaGenerator = SchemaSettings::draft2020_12().into_generator();
-    generator.into_root_schema_for::<Scenario>()
 }
 
 #[cfg(test)]

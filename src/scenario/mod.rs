@@ -17,42 +17,46 @@ mod gossip;
 mod limits;
 mod lines;
 mod needs;
+mod node;
 mod overrides;
 mod path;
+mod protocol;
 mod read;
 mod report;
 mod shape;
 mod source;
 mod study;
+mod swallow;
 mod token;
 mod tree;
+mod typed;
 mod warnings;
+mod write;
 
 pub use crate::text::Style;
-pub use file::{contents, json_schema, load, question, to_ron};
+pub use file::{contents, load, question};
 pub use overrides::Override;
+pub use protocol::ProtocolConfig;
 pub use read::{examine, parse};
 pub use report::{Diagnostic, Place, Report, Warnings};
 pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,
 };
+pub use write::{json_schema, to_ron};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::Span;
 use crate::faults::FaultConfig;
-use crate::kinds::backbone::{Backbone, BackboneConfig};
-use crate::kinds::heartbeat::Heartbeat;
-use crate::kinds::rumor::{Rumor, RumorConfig};
+use crate::kind::{Sections, Shared};
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig, Site};
+use crate::protocol::CompletionConfig;
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
 use crate::protocol::wander::WanderConfig;
-use crate::protocol::{CompletionConfig, Protocol as _};
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
 
@@ -109,36 +113,63 @@ impl Scenario {
     /// When its mission is complete: as its protocol says, else held for as long as the metrics say, else for 10 s.
     #[must_use]
     pub fn completion(&self) -> CompletionConfig {
-        let said = match &self.protocol {
-            ProtocolConfig::Backbone(backbone) => backbone.completion,
-            ProtocolConfig::Rumor(rumor) => rumor.completion,
-            ProtocolConfig::Heartbeat => None,
-        };
+        let said = self.protocol.completion();
         let held = self.metrics.hold.map(CompletionConfig::Held);
         said.or(held).unwrap_or_default()
     }
 
     /// The same scenario, its completion said where it belongs: with the protocol.
     fn settled(mut self) -> Self {
-        let completion = self.completion();
-        let said = match &mut self.protocol {
-            ProtocolConfig::Backbone(backbone) => &mut backbone.completion,
-            ProtocolConfig::Rumor(rumor) => &mut rumor.completion,
-            ProtocolConfig::Heartbeat => return self,
-        };
-        *said = Some(completion);
-        self.metrics.hold = None;
+        if let Some(config) = self.protocol.completed_by(self.completion()) {
+            self.protocol = config.into();
+            self.metrics.hold = None;
+        }
         self
     }
 
     /// What its failure detector is told of the swarm.
     #[must_use]
     pub fn circumstances(&self) -> Circumstances {
-        let period = Span::from_secs(self.control.period.get());
-        Circumstances {
-            robots: self.swarm.robots as usize,
-            status_interval: self.gossip.status.longest_pause(period),
+        self.sections().circumstances()
+    }
+
+    /// What it says beside its protocol.
+    #[must_use]
+    pub fn sections(&self) -> Sections<'_> {
+        Sections {
+            robots: self.swarm.robots,
+            time_limit: self.time_limit.get(),
+            arena: &self.arena,
+            deploy: &self.swarm.deploy,
+            motion: &self.motion,
+            control: &self.control,
+            wander: &self.wander,
+            gossip: &self.gossip,
+            detector: &self.detector,
+            radio: &self.radio,
+            faults: &self.faults,
+            metrics: &self.metrics,
         }
+    }
+
+    /// What its protocol calls the topics in use.
+    #[must_use]
+    pub fn topics(&self) -> &'static [&'static str] {
+        self.protocol.topics(&self.detector)
+    }
+
+    /// Whether robots run the failure detector that it sets.
+    #[must_use]
+    pub fn runs_detector(&self) -> bool {
+        self.protocol.heeds(&self.sections()).contains(&Shared::Detector)
+    }
+
+    /// Whether any robot moves.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        let sections = self.sections();
+        let wanders = self.wander.speed() > 0.0 && self.protocol.heeds(&sections).contains(&Shared::Wander);
+        wanders || self.protocol.moves(&sections)
     }
 
     /// Where its robots are deployed, and by which draws.
@@ -171,28 +202,4 @@ pub struct SwarmConfig {
     pub robots: u32,
     /// Where they start.
     pub deploy: DeployConfig,
-}
-
-/// The protocol that robots run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[allow(clippy::large_enum_variant)] // There is one a scenario.
-pub enum ProtocolConfig {
-    /// The paper's failure-tolerant connectivity backbone.
-    Backbone(BackboneConfig),
-    /// Status broadcasts and timeouts alone.
-    Heartbeat,
-    /// Rumours that spread, until all robots know all of them.
-    Rumor(RumorConfig),
-}
-
-impl ProtocolConfig {
-    /// What the protocol calls its topics.
-    #[must_use]
-    pub fn topics(&self) -> &'static [&'static str] {
-        match self {
-            Self::Backbone(_) => Backbone::TOPICS,
-            Self::Heartbeat => <Heartbeat>::TOPICS,
-            Self::Rumor(_) => Rumor::TOPICS,
-        }
-    }
 }

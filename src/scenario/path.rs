@@ -240,7 +240,7 @@ mod tests {
     use super::super::tree::read;
     use super::*;
 
-    const TEXT: &str = "Scenario(a: 1, p: Backbone(targets: Ring(links: 2)), list: At([(1, 2), (3, x)]), none: None)";
+    const TEXT: &str = "Scenario(a: 1, p: Variant(targets: Ring(links: 2)), list: At([(1, 2), (3, x)]), none: None)";
 
     fn at(path: &str) -> (&'static str, usize) {
         let root = read(TEXT).0.expect("the text has a value");
@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn a_path_finds_its_value_with_or_without_the_names_of_variants() {
         assert_eq!(at("a"), ("1", 1));
-        assert_eq!(at("p.Backbone.targets.Ring.links"), ("2", 5));
+        assert_eq!(at("p.Variant.targets.Ring.links"), ("2", 5));
         assert_eq!(at("p.targets.links"), ("2", 3));
         assert_eq!(at("list.At[1][1]"), ("x", 4));
         assert_eq!(at("list.1.1"), ("x", 3));
@@ -261,7 +261,7 @@ mod tests {
     #[test]
     fn a_path_that_the_file_lacks_leads_to_the_nearest_field_around_it() {
         assert_eq!(at("p.targets.radius"), ("Ring(links: 2)", 2));
-        assert_eq!(at("p.Heartbeat.x"), ("Backbone(targets: Ring(links: 2))", 1));
+        assert_eq!(at("p.Other.x"), ("Variant(targets: Ring(links: 2))", 1));
     }
 
     #[test]

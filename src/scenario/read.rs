@@ -4,10 +4,8 @@
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use ron::error::{Error, SpannedError};
-use ron::extensions::Extensions;
+use ron::error::Error;
 
-use super::checks::Problem;
 use super::document::Document;
 use super::explain::{Finding, explain, nearest};
 use super::overrides::Override;
@@ -15,15 +13,10 @@ use super::path::{FieldPath, Step, field_at, follow, head, path_at};
 use super::report::{Diagnostic, Place, Report, Warnings};
 use super::source::{Source, blank};
 use super::token::{Faults, Span};
-use super::tree::{self, MAX_DEPTH};
+use super::tree;
+use super::typed::{Failure, typed_by};
 use super::{Scenario, limits};
-
-/// How scenario files are read and written: variants hold their fields without a second pair of brackets.
-pub fn options() -> ron::Options {
-    ron::Options::default()
-        .with_default_extension(Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME)
-        .with_recursion_limit(MAX_DEPTH)
-}
+use crate::kind::Problem;
 
 /// Reads the scenario in `text`, the contents of the file `name`, with `overrides` worked in, in order.
 ///
@@ -54,34 +47,7 @@ pub(super) fn document<D: Document>(name: &str, text: &str, overrides: &[Overrid
 
 /// What serde makes of `text`.
 pub(super) fn typed<D: Document>(text: &str) -> Result<D, Box<Failure>> {
-    let at_start = |error: SpannedError| {
-        Box::new(Failure {
-            error,
-            path: FieldPath::default(),
-            whole: true,
-        })
-    };
-    let mut reader = ron::Deserializer::from_str_with_options(text, &options()).map_err(at_start)?;
-    let mut track = serde_path_to_error::Track::new();
-    let read = D::deserialize(serde_path_to_error::Deserializer::new(&mut reader, &mut track));
-    let read = read.and_then(|document| reader.end().map(|()| document));
-    read.map_err(|code| {
-        let path = track.path();
-        let unknown = |segment: &_| matches!(segment, serde_path_to_error::Segment::Unknown);
-        Box::new(Failure {
-            error: reader.span_error(code),
-            path: FieldPath::reached(&path),
-            whole: !path.iter().any(unknown),
-        })
-    })
-}
-
-/// An error of serde, with the path that it had reached.
-pub(super) struct Failure {
-    pub(super) error: SpannedError,
-    path: FieldPath,
-    /// Whether the path is known to its last step.
-    whole: bool,
+    typed_by(text, |reader| D::deserialize(reader)).map_err(|failure| D::nearer(failure, text))
 }
 
 /// How a text is changed so that the rest of it can be read. What stands before it keeps its place.
@@ -155,7 +121,14 @@ impl<'a, D: Document> Reader<'a, D> {
             self.form(&faults, text);
             return None;
         };
-        let finding = explain::<D>(&failure.error, &failure.path, failure.whole, &root, text);
+        let finding = explain(
+            &failure.error,
+            &failure.path,
+            failure.whole,
+            &root,
+            text,
+            (D::KIND, D::shape()),
+        );
         let missing = matches!(failure.error.code, Error::MissingStructField { .. });
         let field = if missing {
             follow(&root, &failure.path, text).field
@@ -172,7 +145,7 @@ impl<'a, D: Document> Reader<'a, D> {
             return None;
         }
         if let (Error::MissingStructField { field, .. }, None) = (&failure.error.code, field) {
-            let (_, stand_in) = D::STAND_INS.iter().find(|(name, _)| name == field)?;
+            let stand_in = D::stand_in(field)?;
             blanked.push(finding_path);
             let group = root.group?;
             let comma = if group.items.last().is_some_and(|last| !last.comma) {
@@ -219,7 +192,8 @@ impl<'a, D: Document> Reader<'a, D> {
         };
         let stands = |path: &FieldPath| follow(&root, path, &text).steps == path.0.len();
         let caused = |problem: &Problem| {
-            problem.involved().any(|path| {
+            problem.involved().map(FieldPath::of).any(|path| {
+                let path = &path;
                 // A field that the file leaves out may be the one that is misspelt beside it.
                 let misspelt = |left_out: &FieldPath| !stands(path) && left_out.parent() == path.parent();
                 let touches = |left_out: &FieldPath| left_out.holds(path) || path.holds(left_out);
@@ -294,25 +268,26 @@ fn stands_for(blanked: &FieldPath, missing: &FieldPath) -> bool {
 
 /// Places a problem at its field, or where that is left out, at another that it depends on, or at what is around it.
 pub(super) fn between(problem: Problem, root: &tree::Node, text: &str) -> Finding {
-    let stands = |path: &&FieldPath| {
+    let stands = |path: &FieldPath| {
         let place = follow(root, path, text);
         place.steps == path.0.len()
     };
-    let path = problem.involved().find(stands);
-    let place = follow(root, path.unwrap_or(&problem.path), text);
-    let (span, label) = match (path, place.field) {
+    let changed = FieldPath::of(&problem.path);
+    let path = problem.involved().map(FieldPath::of).find(stands);
+    let place = follow(root, path.as_ref().unwrap_or(&changed), text);
+    let (span, label) = match (&path, place.field) {
         (Some(_), _) if place.node.group.is_none() => (place.node.span.clone(), "here".to_owned()),
         (None, Some(field)) => {
             let key = field.key.clone().unwrap_or_else(|| head(place.node));
-            (key, format!("leaves `{}` at its default", problem.path))
+            (key, format!("leaves `{changed}` at its default"))
         }
-        (None, None) => (head(place.node), format!("leaves `{}` at its default", problem.path)),
+        (None, None) => (head(place.node), format!("leaves `{changed}` at its default")),
         (Some(_), _) => (head(place.node), "here".to_owned()),
     };
     Finding {
         message: problem.message,
         help: problem.help,
-        path: problem.path,
+        path: changed,
         span,
         label,
     }

@@ -1,6 +1,7 @@
 //! What a scenario may hold, field by field, read off its JSON Schema: for messages that say what would be right.
 
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use serde_json::Value;
 
@@ -18,8 +19,12 @@ pub struct Shape<'s> {
 impl Shape<'static> {
     /// The schema of a whole scenario.
     pub fn scenario() -> Self {
-        static SCHEMA: OnceLock<Value> = OnceLock::new();
-        let root = SCHEMA.get_or_init(|| super::json_schema().to_value());
+        // One for each number of kinds of protocols that there were: they are added before anything is read, once or twice in a program.
+        static SCHEMAS: Mutex<BTreeMap<usize, &'static Value>> = Mutex::new(BTreeMap::new());
+        let mut schemas = SCHEMAS.lock().unwrap_or_else(PoisonError::into_inner);
+        let root: &'static Value = schemas
+            .entry(crate::kinds::names().len())
+            .or_insert_with(|| Box::leak(Box::new(super::json_schema().to_value())));
         Self {
             root,
             here: root,

@@ -13,9 +13,7 @@ mod error;
 mod inbox;
 mod run;
 mod setup;
-mod trial;
 mod wakes;
 
 pub use error::RunError;
 pub use setup::{DriverKind, Setup};
-pub use trial::{TrialError, run_trial, trace_trial};

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use desim::engine::{ActorId, SimTime, Span};
+use desim::experiment::run_trial;
 use desim::geometry::Vec2;
 use desim::kinds::backbone::Role;
 use desim::metrics::detection::{Suspicion, Verdict};
 use desim::metrics::{Outcome, RobotState, TrialRecord};
 use desim::scenario::{Override, Scenario, load};
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use proptest::prelude::*;
 use tokio_util::sync::CancellationToken;
 

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use desim::experiment::run_trial;
 use desim::geometry::Vec2;
 use desim::kinds::backbone::Role;
 use desim::metrics::{Outcome, RobotState, TrialRecord};
 use desim::scenario::{Override, load};
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 fn run(file: &str, overrides: &[&str], trial: u32) -> TrialRecord {

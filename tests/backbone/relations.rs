@@ -7,11 +7,11 @@ use std::path::Path;
 use std::rc::Rc;
 
 use desim::engine::{ActorId, SimTime, Span};
-use desim::kinds::backbone::{self, Backbone, BackboneCodec, Message, Request, Role};
+use desim::kinds::backbone::{self, Backbone, BackboneCodec, BackboneConfig, Message, Request, Role};
 use desim::metrics::{FaultKind, TrialRecord};
 use desim::motion::deploy;
 use desim::protocol::{Input, Note, Output, Protocol, Topic, Wake};
-use desim::scenario::{Override, ProtocolConfig, Scenario, load};
+use desim::scenario::{Override, Scenario, load};
 use desim::simulation::{DriverKind, Setup};
 use proptest::prelude::*;
 use tokio_util::sync::CancellationToken;
@@ -101,9 +101,7 @@ fn scenario(file: &str, overrides: &[String]) -> Scenario {
 
 /// Runs `trial` to its time limit, complete or not: every robot's ties at every step, and the record.
 fn watch(scenario: &Scenario, trial: u32) -> (Vec<Vec<Ties>>, TrialRecord) {
-    let ProtocolConfig::Backbone(config) = &scenario.protocol else {
-        panic!("a backbone")
-    };
+    let config: &BackboneConfig = scenario.protocol.as_kind().expect("a backbone");
     let setup = Setup {
         seed: scenario.seed,
         trial,

@@ -5,11 +5,12 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use desim::engine::Span;
+use desim::experiment::run_trial;
 use desim::metrics::comparison::{Comparison, Design, Trials};
 use desim::metrics::figures::{Figure, Registry, Sample, pool};
 use desim::metrics::{Summary, TrialRecord};
 use desim::scenario::{Override, Scenario, load, parse};
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use serde_json::Value;
 use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;
@@ -38,7 +39,7 @@ fn records(scenario: &Scenario) -> Vec<TrialRecord> {
 }
 
 fn summary(scenario: &Scenario) -> Summary {
-    Summary::of(&scenario.name, scenario.protocol.topics(), &[], &records(scenario))
+    Summary::of(&scenario.name, scenario.protocol.all_topics(), &[], &records(scenario))
 }
 
 #[test]
@@ -221,7 +222,7 @@ fn every_figure_that_summary_and_comparison_share_has_the_same_value_and_interva
             continue;
         };
         let records = records(&scenario);
-        let topics = scenario.protocol.topics();
+        let topics = scenario.protocol.all_topics();
         let summary = serde_json::to_value(Summary::of(&scenario.name, topics, &[], &records)).unwrap();
         let comparison = compared(&Registry::of(topics), &records);
         for (key, figure) in &comparison.settings[0].figures.0 {

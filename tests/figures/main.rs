@@ -8,3 +8,4 @@ mod estimators;
 mod failed_missions;
 mod metrics;
 mod predictions;
+mod preflight;

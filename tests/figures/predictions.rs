@@ -7,10 +7,11 @@
 use std::path::PathBuf;
 
 use desim::cli::check::{Say, check};
+use desim::experiment::run_trial;
 use desim::metrics::Summary;
 use desim::predict::{Preflight, Surprise, surprises};
 use desim::scenario::{Scenario, parse};
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 const TRIALS: u32 = 20;

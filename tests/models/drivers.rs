@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use desim::experiment::run_trial;
 use desim::metrics::TrialRecord;
 use desim::scenario::{Override, Scenario, load};
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 fn scenario(file: &str, overrides: &[&str]) -> Scenario {

@@ -1,12 +1,13 @@
 //! Robots are alike whatever their number: where a robot stands, and so what befalls it, does not depend on it.
 
 use desim::engine::Streams;
+use desim::experiment::run_trial;
 use desim::geometry::Vec2;
 use desim::metrics::Outcome;
 use desim::motion::{ArenaConfig, DeployConfig, ObstacleConfig, deploy};
 use desim::quantity::{Finite, Positive};
 use desim::scenario::parse;
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 /// Places of all robots of a cluster but for the first, which stands at the centre, as is said of it.

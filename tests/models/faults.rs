@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use desim::engine::{ActorId, SimTime};
+use desim::experiment::run_trial;
 use desim::metrics::{FaultKind, TrialRecord};
 use desim::protocol::CompletionConfig;
 use desim::quantity::{NonNegative, Positive};
 use desim::radio::LossCause;
-use desim::scenario::{ProtocolConfig, Scenario, load, parse};
-use desim::simulation::{DriverKind, run_trial};
+use desim::scenario::{Scenario, load, parse};
+use desim::simulation::DriverKind;
 use proptest::prelude::*;
 use tokio_util::sync::CancellationToken;
 
@@ -257,8 +258,9 @@ fn the_shipped_examples_of_faults_run_and_something_fails() {
     for file in examples {
         let mut scenario = load(&file, &[]).unwrap_or_else(|report| panic!("{report}"));
         scenario.time_limit = Positive::new(390.0);
-        if let ProtocolConfig::Backbone(backbone) = &mut scenario.protocol {
-            backbone.completion = Some(CompletionConfig::Held(NonNegative::new(385.0)));
+        let completion = CompletionConfig::Held(NonNegative::new(385.0));
+        if let Some(longer) = scenario.protocol.completed_by(completion) {
+            scenario.protocol = longer.into();
         }
         // Radiation spares a trial once in a while, and three in a row once in a hundred times.
         let something_fails = |trial| !run_with(&scenario, DriverKind::Inline, trial).faults.is_empty();

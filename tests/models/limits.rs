@@ -2,6 +2,7 @@
 
 use bytes::{Buf as _, BufMut as _, BytesMut};
 use desim::engine::{ActorId, SimTime, Span, Streams};
+use desim::experiment::run_trial;
 use desim::faults::RegionConfig;
 use desim::geometry::{Pose, Vec2, is_left_of};
 use desim::metrics::{Graph, Mission, MissionTarget, Outcome, TrialRecord};
@@ -10,7 +11,7 @@ use desim::predict::Preflight;
 use desim::protocol::{CodecError, Input, Note, Output, Protocol, Role};
 use desim::quantity::{Finite, Positive};
 use desim::scenario::parse;
-use desim::simulation::{DriverKind, Setup, run_trial};
+use desim::simulation::{DriverKind, Setup};
 use proptest::prelude::*;
 use tokio_util::codec::{Decoder, Encoder};
 use tokio_util::sync::CancellationToken;

@@ -2,10 +2,11 @@
 //!
 //! Pairs of robots 1 m apart, out of reach of all other pairs, so that each is a sample of its own.
 
+use desim::experiment::run_trial;
 use desim::metrics::TrialRecord;
 use desim::metrics::detection::FailureOutcome;
 use desim::scenario::parse;
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 const PAIRS: u32 = 40;

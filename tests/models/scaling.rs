@@ -1,7 +1,8 @@
 //! Models hold no lengths of their own: only those of the scenario, and shares of them.
 
+use desim::experiment::run_trial;
 use desim::scenario::parse;
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 /// A scenario with every length and speed times 128. Powers of two are exact in binary, so that the mission must be the same to the

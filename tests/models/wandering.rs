@@ -1,9 +1,10 @@
 //! Robots that wander, with their drives, their bodies and walls: where they are in the long run, and that they get where they go.
 
+use desim::experiment::run_trial;
 use desim::geometry::Vec2;
 use desim::metrics::TrialRecord;
 use desim::scenario::parse;
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 fn run(settings: &str, trial: u32) -> TrialRecord {

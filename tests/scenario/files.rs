@@ -4,12 +4,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use desim::cli::check::{Say, check};
-use desim::kinds::backbone::TargetsConfig;
+use desim::kinds::backbone::{BackboneConfig, TargetsConfig};
 use desim::protocol::CompletionConfig;
 use desim::radio::{LatencyConfig, LossConfig};
-use desim::scenario::{
-    Override, ProtocolConfig, Report, Scenario, Style, examine, json_schema, load, parse, question, to_ron,
-};
+use desim::scenario::{Override, Report, Scenario, Style, examine, json_schema, load, parse, question, to_ron};
 
 use crate::shipped;
 
@@ -104,9 +102,8 @@ fn a_resolved_scenario_reads_back_to_an_equal_one_that_resolves_to_the_same_text
 #[test]
 fn an_override_sets_a_field_that_the_file_has_with_or_without_the_names_of_variants() {
     for given in ["protocol.targets.links=3", "protocol.Backbone.targets.Ring.links=3"] {
-        let ProtocolConfig::Backbone(backbone) = with(&[given]).protocol else {
-            panic!("the protocol has changed");
-        };
+        let protocol = with(&[given]).protocol;
+        let backbone: &BackboneConfig = protocol.as_kind().expect("the protocol has not changed");
         assert!(matches!(
             backbone.targets,
             TargetsConfig::Ring { count: 4, links: 3, .. }

@@ -5,4 +5,6 @@ mod shipped;
 
 mod files;
 mod fuzz;
+mod gossip;
+mod kinds;
 mod warnings;

@@ -1,6 +1,8 @@
 //! The failure-tolerant connectivity backbone (paper section 4): robots build chains of relays from a root to workers
 //! that visit targets, as many chains to a target as it needs.
 
+mod change;
+mod checks;
 mod codec;
 mod config;
 mod duty;
@@ -8,14 +10,17 @@ mod forces;
 mod free;
 mod heal;
 mod isolated;
+mod kind;
 mod lines;
 mod message;
 mod mission;
 mod neighbours;
 mod networker;
 mod recruit;
+mod relays;
 mod requests;
 mod root;
+mod said;
 mod shortage;
 mod sidestep;
 mod strand;
@@ -38,15 +43,16 @@ use mission::{Mission, Parameters};
 use neighbours::Neighbours;
 use recruit::Recruiter;
 use root::Root;
+use said::Said;
 use sidestep::Sidestep;
 use view::{Knowledge, View};
 use worker::Worker;
 
 use crate::engine::{ActorId, SimTime, Streams};
 use crate::geometry::{Pose, Vec2};
-use crate::protocol::control::{ControlConfig, Rhythm};
+use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{self, Circumstances, Detector, DetectorConfig};
-use crate::protocol::gossip::{GossipConfig, Repeat};
+use crate::protocol::gossip::GossipConfig;
 use crate::protocol::{Input, Note, Output, Protocol, Reception, Topic, Wake};
 
 /// One robot of the backbone.
@@ -62,41 +68,6 @@ pub struct Backbone {
     unread: Vec<Reception<Rc<Message>>>,
     said: Said,
     told: Told,
-}
-
-/// What the robot last said, topic by topic, and what it passes on.
-#[derive(Debug)]
-struct Said {
-    status: Repeat<Status>,
-    strands: Repeat<Vec<Message>>,
-    /// The order that it passes on, and how often it has.
-    order: (Order, u64),
-}
-
-impl Said {
-    /// Nothing yet.
-    fn nothing(robot: ActorId, parameters: &Parameters) -> Self {
-        let Parameters {
-            status_repetition,
-            strand_repetition,
-            phases,
-            ..
-        } = *parameters;
-        Self {
-            status: Repeat::new(status_repetition, Rhythm::StatusRefresh, phases, robot),
-            strands: Repeat::new(strand_repetition, Rhythm::StrandRefresh, phases, robot),
-            order: Default::default(),
-        }
-    }
-
-    /// Whether `order` is to be passed on once more, of at most `limit` times.
-    fn passes_on(&mut self, order: Order, limit: u64) -> bool {
-        if self.order.0 != order {
-            self.order = (order, 0);
-        }
-        self.order.1 += 1;
-        self.order.1 <= limit
-    }
 }
 
 /// What the metrics were last told.

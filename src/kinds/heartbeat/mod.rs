@@ -3,12 +3,16 @@
 //! Every robot broadcasts a 4-byte status, and its detector believes what it believes of those that it hears. Robots stand
 //! still, or wander.
 
+mod kind;
+
 use std::convert::Infallible;
 use std::marker::PhantomData;
 use std::rc::Rc;
 
 use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
+
+pub use kind::HeartbeatConfig;
 
 use crate::engine::{ActorId, SimTime, Streams};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm};

@@ -103,7 +103,7 @@ impl RumorConfig {
 
     /// What is wrong with these settings together, for `robots` robots: the field at fault and what would be right.
     #[must_use]
-    pub fn problems(&self, robots: u32) -> Vec<(String, String)> {
+    pub fn own_problems(&self, robots: u32) -> Vec<(String, String)> {
         let mut problems = Vec::new();
         let mut problem = |field: &str, message: String| problems.push((field.to_owned(), message));
         let rumors = self.sources.rumors();

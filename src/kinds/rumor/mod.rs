@@ -11,6 +11,7 @@
 //! the mean 2 (N − 1) H(N − 1) / (N β (1 − p)).
 
 mod config;
+mod kind;
 mod message;
 
 use std::rc::Rc;

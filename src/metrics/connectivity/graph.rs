@@ -4,12 +4,10 @@ use petgraph::unionfind::UnionFind;
 
 use crate::geometry::{Vec2, at_most};
 
-use super::lanczos::least_positive_eigenvalue;
-
 /// An undirected simple graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Graph {
-    vertices: usize,
+    pub(super) vertices: usize,
     /// Each edge once, its lower end first, sorted.
     edges: Vec<[u32; 2]>,
 }
@@ -80,16 +78,6 @@ impl Graph {
             .filter(|&&[a, b]| sets.union(a as usize, b as usize))
             .count();
         self.vertices - joins
-    }
-
-    /// Algebraic connectivity λ₂, the second least eigenvalue of the Laplacian; 0 if the graph is not connected, and
-    /// by convention 0 for fewer than two vertices.
-    #[must_use]
-    pub fn algebraic_connectivity(&self) -> f64 {
-        if self.vertices < 2 || self.components() > 1 {
-            return 0.0;
-        }
-        least_positive_eigenvalue(self)
     }
 }
 

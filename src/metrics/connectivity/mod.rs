@@ -3,6 +3,7 @@
 mod chains;
 mod cholesky;
 mod graph;
+mod lambda2;
 mod lanczos;
 
 pub use chains::Chains;

@@ -13,7 +13,7 @@ use crate::quantity::Positive;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum DetectorConfig {
-    /// None: robots suspect nobody, keep no account of whom they hear, and set no timer. Not for `Backbone`, which forgets who has left and
+    /// None: robots suspect nobody, keep no account of whom they hear, and set no timer. Not for a protocol that forgets who has left and
     /// mends its chains by what its detector says.
     None,
     /// A neighbour not heard for this many seconds is declared inactive (paper section 4.3). Recommended: several times

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use crate::engine::Span;
 use crate::quantity::{Positive, Probability};
 
-use super::repeat::Repetition;
 use super::turns::Timing;
 
 /// Gossip settings, topic by topic.
@@ -193,18 +192,6 @@ impl TopicConfig {
     pub fn timing(&self, control_period: Span) -> Timing {
         Timing::new(self.interval, self.jitter, control_period)
     }
-
-    /// What it sends then.
-    #[must_use]
-    pub fn repetition(&self, control_period: Span) -> Repetition {
-        Repetition::new(self.send, self.timing(control_period), control_period)
-    }
-
-    /// The longest pause from one broadcast to the next, whatever there is to say.
-    #[must_use]
-    pub fn longest_pause(&self, control_period: Span) -> Span {
-        control_period * self.repetition(control_period).longest_pause()
-    }
 }
 
 impl StrandConfig {
@@ -212,12 +199,6 @@ impl StrandConfig {
     #[must_use]
     pub fn timing(&self, control_period: Span) -> Timing {
         Timing::new(self.interval, self.jitter, control_period)
-    }
-
-    /// What it sends then.
-    #[must_use]
-    pub fn repetition(&self, control_period: Span) -> Repetition {
-        Repetition::new(self.send, self.timing(control_period), control_period)
     }
 }
 

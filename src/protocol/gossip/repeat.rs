@@ -3,7 +3,7 @@
 use crate::engine::{ActorId, Span};
 use crate::protocol::control::{Phases, Rhythm};
 
-use super::config::SendConfig;
+use super::config::{SendConfig, StrandConfig, TopicConfig};
 use super::turns::Timing;
 
 /// When a message is said again, in working units.
@@ -41,6 +41,28 @@ impl Repetition {
     #[must_use]
     pub const fn longest_pause(self) -> u64 {
         self.timing.every() * (self.refresh - 1) + self.timing.longest()
+    }
+}
+
+impl TopicConfig {
+    /// What is sent when the topic has its turn.
+    #[must_use]
+    pub fn repetition(&self, control_period: Span) -> Repetition {
+        Repetition::new(self.send, self.timing(control_period), control_period)
+    }
+
+    /// The longest pause from one broadcast to the next, whatever there is to say.
+    #[must_use]
+    pub fn longest_pause(&self, control_period: Span) -> Span {
+        control_period * self.repetition(control_period).longest_pause()
+    }
+}
+
+impl StrandConfig {
+    /// What is sent when the topic has its turn.
+    #[must_use]
+    pub fn repetition(&self, control_period: Span) -> Repetition {
+        Repetition::new(self.send, self.timing(control_period), control_period)
     }
 }
 

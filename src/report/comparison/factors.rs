@@ -1,6 +1,6 @@
 //! What single factors do, and whether what one does depends on another, in words and in tables.
 
-use super::tables::{effect_verdict, put};
+use super::rows::{effect_verdict, put};
 use super::words::{change, fitted, percent, probability, with_unit};
 use crate::metrics::comparison::{Comparison, Dependence, Effect, Interaction, Verdict, apart};
 use crate::metrics::figures::Figure;

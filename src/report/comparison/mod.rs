@@ -1,11 +1,13 @@
 //! Settings compared, as text for people.
 
+mod describe;
 mod factors;
 mod finding;
+mod rows;
 mod tables;
 mod words;
 
-pub use words::describe;
+pub use describe::describe;
 pub(super) use words::{fitted, label, stopping};
 
 use std::path::Path;

@@ -1,18 +1,12 @@
 //! The tables of a comparison.
 
 use super::factors;
+use super::rows::{effect_verdict, put};
 use super::words::{can_differ, fitted, label, percent, probability};
 use crate::metrics::comparison::{Comparison, Pair, Setting, Verdict};
 use crate::metrics::figures::{Better, Figure};
-use crate::report::grid::Grid;
 use crate::report::layout::Page;
 use crate::report::number::{NOTHING, count, figure as number};
-
-pub fn put(page: &mut Page, header: &[String], rows: impl Iterator<Item = Vec<String>>) {
-    let mut grid = Grid::of_figures(header);
-    rows.for_each(|row| grid.row(row));
-    page.table(&grid);
-}
 
 fn compared(comparison: &Comparison) -> Vec<&Figure> {
     comparison
@@ -128,17 +122,6 @@ pub fn differences(page: &mut Page, comparison: &Comparison) {
 /// Whether a difference may be there that the trials did not show, or could not.
 fn is_unclear(pair: &Pair) -> bool {
     can_differ(pair) && matches!(pair.verdict, Verdict::NoDetectableDifference | Verdict::CannotTell)
-}
-
-/// A verdict in a word or two.
-pub fn effect_verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Better => "better",
-        Verdict::Worse => "worse",
-        Verdict::NoDetectableDifference => "unclear",
-        Verdict::CannotTell => "cannot tell",
-        Verdict::NotComparable => NOTHING,
-    }
 }
 
 fn difference(comparison: &Comparison, pair: &Pair) -> Vec<String> {

@@ -1,21 +1,9 @@
-//! A comparison in plain words: which setting is better, by how much, how sure.
+//! What the words of a comparison share: figures as long as they make sense, names, probabilities.
 
-use super::factors;
-use super::finding::finding;
 use crate::metrics::Estimate;
 use crate::metrics::comparison::{Comparison, Pair, Stopping, Verdict};
 use crate::metrics::figures::Figure;
 use crate::report::number::{NOTHING, count, figure as number};
-
-/// Fills in the words of each difference, and the finding.
-pub fn describe(comparison: &mut Comparison) {
-    let words: Vec<String> = comparison.pairs.iter().map(|pair| of_pair(comparison, pair)).collect();
-    for (pair, words) in comparison.pairs.iter_mut().zip(words) {
-        pair.words = words;
-    }
-    factors::describe(comparison);
-    comparison.finding = finding(comparison);
-}
 
 /// The value, with as many digits as its interval makes sense of.
 pub fn fitted(estimate: &Estimate) -> String {
@@ -41,7 +29,7 @@ pub fn fitted(estimate: &Estimate) -> String {
     format!("{} [{low}, {high}]", write(value))
 }
 
-fn signed(value: f64, written: &str) -> String {
+pub fn signed(value: f64, written: &str) -> String {
     let is_zero = !written.contains(|digit: char| ('1'..='9').contains(&digit));
     if value < 0.0 && !is_zero {
         format!("−{written}")
@@ -102,49 +90,6 @@ pub fn change(difference: &Estimate, relative: Option<f64>, figure: &Figure) -> 
         format!(" ({} {less})", percent(Some(share.abs())))
     });
     format!("{way} by {}{relative}", with_unit(&fitted(&size), figure))
-}
-
-fn of_pair(comparison: &Comparison, pair: &Pair) -> String {
-    let Some(figure) = comparison.figure(&pair.figure) else {
-        return String::new();
-    };
-    let [setting, against] = [&pair.setting, &pair.against].map(|name| label(comparison, name));
-    let name = &figure.name;
-    let p = format!("adjusted p {}", probability(pair.p_adjusted));
-    let found = fitted(&pair.difference);
-    match pair.verdict {
-        Verdict::NotComparable => {
-            format!("{name}: {setting} and {against} cannot be compared, for one of them has no value")
-        }
-        Verdict::CannotTell => {
-            let trials = count(pair.difference.n);
-            format!(
-                "{name}: cannot tell {setting} from {against} with {trials} trials ({found}){}",
-                planned(comparison, pair, figure)
-            )
-        }
-        Verdict::NoDetectableDifference if pair.p_adjusted.is_none() => {
-            format!("{name}: {setting} and {against} are the same in every trial")
-        }
-        Verdict::NoDetectableDifference => {
-            let seen = format!("{name}: no detectable difference between {setting} and {against}");
-            format!("{seen} ({found}, {p}){}", planned(comparison, pair, figure))
-        }
-        Verdict::Better | Verdict::Worse => {
-            let verdict = if pair.verdict == Verdict::Better {
-                "better"
-            } else {
-                "worse"
-            };
-            let delta = pair.cliffs_delta.value.map_or(NOTHING.to_owned(), |delta| {
-                signed(delta, &format!("{:.2}", delta.abs()))
-            });
-            format!(
-                "{name}: {setting} is {verdict} than {against}, {}, Cliff's δ {delta}, {p}",
-                change(&pair.difference, pair.relative, figure)
-            )
-        }
-    }
 }
 
 /// How many trials would show a difference worth finding; nothing where the two are the same in every trial.

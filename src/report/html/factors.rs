@@ -7,10 +7,9 @@ use plotly::layout::HoverMode;
 use super::chart::{chart, escaped, legend, one_value, shown, topic_colour};
 use super::figure::{Figure, HEIGHT, Panel};
 use super::matrix;
-use super::settings::{
-    Row, better, capital, cells, colour, difference_axis, forest, near, slug, unit, verdict, with_unit,
-};
+use super::settings::{Row, better, capital, cells, difference_axis, forest, near, slug, unit, with_unit};
 use super::table::{Cell, DataTable};
+use super::verdict::{colour, words};
 use crate::metrics::comparison::{Comparison, Dependence, Interaction};
 use crate::metrics::figures;
 use crate::report::comparison::family;
@@ -49,7 +48,7 @@ pub fn effects(comparison: &Comparison, figure: &figures::Figure) -> Option<Figu
             effect.relative.map(|share| share * 100.0).into(),
             effect.p.into(),
             effect.p_adjusted.into(),
-            verdict(effect.verdict).into(),
+            words(effect.verdict).into(),
         ]);
         row
     }));

@@ -13,7 +13,6 @@ use super::figure::{Figure, Panel};
 use super::table::{Cell, DataTable};
 use crate::geometry::{Vec2, at_most};
 use crate::metrics::TrialRecord;
-use crate::scenario::ProtocolConfig;
 
 const HEIGHT: u32 = 460;
 
@@ -60,10 +59,9 @@ pub fn traffic(input: &PageInput) -> Option<Figure> {
 }
 
 fn targets(input: &PageInput) -> Vec<Vec2> {
-    let ProtocolConfig::Backbone(config) = &input.scenario.protocol else {
-        return Vec::new();
-    };
-    config.targets().into_iter().map(|(place, _)| place).collect()
+    let targets = input.scenario.protocol.targets();
+    let places = targets.into_iter().flat_map(|targets| targets.places);
+    places.map(|(place, _)| place).collect()
 }
 
 fn map(input: &PageInput, record: &TrialRecord, load: &[f64]) -> Plot {

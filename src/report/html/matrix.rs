@@ -7,7 +7,7 @@ use plotly::{HeatMap, Plot, Scatter};
 use super::chart::{chart, escaped, shown};
 use super::figure::{Panel, row_height};
 use super::names::Names;
-use super::settings::{BETTER, UNCLEAR, WORSE};
+use super::verdict::{BETTER, UNCLEAR, WORSE, words};
 use crate::metrics::comparison::{Comparison, Pair, Verdict};
 use crate::metrics::figures::Better;
 use crate::report::comparison::{fitted, label};
@@ -69,7 +69,7 @@ pub fn pairs(comparison: &Comparison, pairs: &[&Pair]) -> Panel {
                 escaped(one),
                 escaped(other),
                 fitted(&difference),
-                super::settings::verdict(verdict)
+                words(verdict)
             );
         }
     }

@@ -27,6 +27,7 @@ mod series;
 mod settings;
 mod study;
 mod table;
+mod verdict;
 
 pub use page::{PAGE_MARK, page};
 pub use study::study_page;

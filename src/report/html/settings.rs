@@ -9,19 +9,14 @@ use super::figure::{Figure, Panel};
 use super::matrix;
 use super::names::Names;
 use super::table::{Cell, DataTable};
+use super::verdict::{colour, words};
 use crate::metrics::Estimate;
-use crate::metrics::comparison::{Comparison, Pair, Verdict};
+use crate::metrics::comparison::{Comparison, Pair};
 use crate::metrics::figures::{self, Better};
 use crate::report::comparison::{family, label};
 use crate::report::number;
 
 const NEUTRAL: &str = "#0072b2";
-/// What is better, what is worse, and what shows no difference.
-pub const BETTER: &str = "#009e73";
-/// See [`BETTER`].
-pub const WORSE: &str = "#d55e00";
-/// See [`BETTER`].
-pub const UNCLEAR: &str = "#8a8a8a";
 
 /// Differences between settings, pair by pair, of which more than this are drawn as a table of all settings by all.
 const MOST_PAIRS: usize = 15;
@@ -162,7 +157,7 @@ fn row(comparison: &Comparison, pair: &Pair) -> Vec<Cell> {
         pair.cliffs_delta.value.into(),
         pair.p.into(),
         pair.p_adjusted.into(),
-        verdict(pair.verdict).into(),
+        words(pair.verdict).into(),
     ]);
     let gain = pair.gain.as_ref();
     row.extend([
@@ -240,26 +235,6 @@ fn cut_off(comparison: &Comparison, figure: &figures::Figure) -> bool {
         let survival = setting.figure(&figure.key).and_then(|figure| figure.survival.as_ref());
         survival.is_some_and(|survival| survival.censored > 0)
     })
-}
-
-/// The colour of a verdict.
-pub fn colour(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Better => BETTER,
-        Verdict::Worse => WORSE,
-        Verdict::NoDetectableDifference | Verdict::CannotTell | Verdict::NotComparable => UNCLEAR,
-    }
-}
-
-/// A verdict in words.
-pub fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Better => "better",
-        Verdict::Worse => "worse",
-        Verdict::NoDetectableDifference => "no detectable difference",
-        Verdict::CannotTell => "cannot tell",
-        Verdict::NotComparable => "not comparable",
-    }
 }
 
 pub(super) fn better(figure: &figures::Figure) -> &'static str {

@@ -3,16 +3,21 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use super::super::{ProtocolConfig, Scenario};
-use super::{FAILURE, LOST, OBSERVED, STATUS};
+use super::super::Scenario;
 use crate::engine::Span;
 use crate::faults::{LastsConfig, WhenConfig};
 use crate::motion::DeployConfig;
 use crate::protocol::control::WakeConfig;
 use crate::protocol::detector::DetectorConfig;
-use crate::protocol::gossip::FanOutConfig;
 use crate::quantity::{Finite, Probability};
 use crate::radio::{LossChain, LossConfig};
+
+/// Of a status sent lately, and of a lost copy of it, in lists that double.
+const STATUS: f64 = 32.0;
+const LOST: f64 = 16.0;
+/// Of a failed robot at an observer, and of a failure.
+const OBSERVED: f64 = 250.0;
+const FAILURE: f64 = 1500.0;
 
 /// What several of these bounds need to know.
 pub struct View<'a> {
@@ -41,12 +46,8 @@ impl<'a> View<'a> {
         let met = robots * (robots - 1.0) * swept / (width * height);
         let sample_interval = scenario.metrics.sample_interval.get();
         let period = Span::from_secs(scenario.control.period.get());
-        let status_s = match scenario.protocol {
-            ProtocolConfig::Backbone(_) | ProtocolConfig::Heartbeat => {
-                Some((period * scenario.gossip.status.timing(period).every()).as_secs())
-            }
-            ProtocolConfig::Rumor(_) => None,
-        };
+        let interval = || (period * scenario.gossip.status.timing(period).every()).as_secs();
+        let status_s = scenario.protocol.has_statuses().then(interval);
         Self {
             scenario,
             robots,
@@ -64,14 +65,11 @@ impl<'a> View<'a> {
     }
 
     fn moves(&self) -> bool {
-        match self.scenario.protocol {
-            ProtocolConfig::Backbone(_) => true,
-            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => self.scenario.wander.speed() > 0.0,
-        }
+        self.scenario.moves()
     }
 
     pub fn topics(&self) -> f64 {
-        (self.scenario.protocol.topics().len() + 1) as f64
+        (self.scenario.protocol.all_topics().len() + 1) as f64
     }
 
     pub fn entries(&self) -> f64 {
@@ -91,30 +89,8 @@ impl<'a> View<'a> {
 
     /// Frames that a robot sends in a second.
     fn rate(&self) -> f64 {
-        let gossip = &self.scenario.gossip;
-        let period = self.scenario.control.period.get();
-        let a_second = |interval: f64| 1.0 / interval.max(period);
         let statuses = self.status_s.map_or(0.0, |interval| 1.0 / interval);
-        let own = match &self.scenario.protocol {
-            ProtocolConfig::Backbone(_) => {
-                let topics = [gossip.strand.interval, gossip.request.interval, gossip.relay.interval];
-                topics.iter().map(|interval| a_second(interval.get())).sum()
-            }
-            ProtocolConfig::Heartbeat => 0.0,
-            ProtocolConfig::Rumor(rumor) => {
-                let peers = match gossip.relay.fan_out {
-                    FanOutConfig::Everyone => 1.0,
-                    FanOutConfig::Peers(peers) => f64::from(peers),
-                };
-                let interval = gossip.relay.interval.get();
-                let rounds = if rumor.is_poisson() {
-                    1.0 / interval
-                } else {
-                    a_second(interval)
-                };
-                rounds * rumor.sources.rumors() as f64 * peers
-            }
-        };
+        let own = self.scenario.protocol.frames_a_second(&self.scenario.sections());
         statuses + own + self.probes()
     }
 
@@ -131,13 +107,12 @@ impl<'a> View<'a> {
     /// Seconds that an arrival waits at most until its receiver wakes.
     fn waits(&self) -> f64 {
         let period = self.scenario.control.period.get();
-        match (&self.scenario.protocol, self.scenario.control.wake) {
-            (_, WakeConfig::OnReception) => 0.0,
-            // Rounds of a Poisson process wake a robot too, and seldom ten times later than on average.
-            (ProtocolConfig::Rumor(rumor), WakeConfig::ControlStep) if rumor.is_poisson() => {
-                period.min(10.0 * self.scenario.gossip.relay.interval.get())
+        match self.scenario.control.wake {
+            WakeConfig::OnReception => 0.0,
+            WakeConfig::ControlStep => {
+                let sooner = self.scenario.protocol.wakes_within(&self.scenario.sections());
+                sooner.map_or(period, |seconds| period.min(seconds))
             }
-            (_, WakeConfig::ControlStep) => period,
         }
     }
 

@@ -1,20 +1,19 @@
 //! The figures that a study compares: those that all of its settings have.
 
-use super::Plan;
+use crate::kind::Problem;
 use crate::metrics::figures::Registry;
-use crate::scenario::ProtocolConfig;
-use crate::scenario::checks::Problem;
+use crate::scenario::Scenario;
 use crate::scenario::explain::nearest;
 
 /// Keys of the figures that every setting has.
-pub fn common(plan: &Plan) -> Vec<String> {
-    let of = |protocol: &ProtocolConfig| -> Vec<String> {
-        let registry = Registry::of(protocol.topics());
+pub fn common(scenarios: &[&Scenario]) -> Vec<String> {
+    let of = |scenario: &Scenario| -> Vec<String> {
+        let registry = Registry::of(scenario.protocol.all_topics());
         registry.figures().map(|figure| figure.key.clone()).collect()
     };
     let mut known: Option<Vec<String>> = None;
-    for setting in &plan.settings {
-        let has = of(&setting.scenario.protocol);
+    for scenario in scenarios {
+        let has = of(scenario);
         known = Some(match known {
             None => has,
             Some(known) => known.into_iter().filter(|key| has.contains(key)).collect(),
@@ -24,10 +23,10 @@ pub fn common(plan: &Plan) -> Vec<String> {
 }
 
 /// What two scenarios are compared by where nobody says: what the mission takes, what it costs, what arrives, who is mistaken.
-pub fn usual(plan: &Plan) -> Vec<String> {
-    let all = |has: fn(&ProtocolConfig) -> bool| plan.settings.iter().all(|setting| has(&setting.scenario.protocol));
-    let mission = all(|protocol| !matches!(protocol, ProtocolConfig::Heartbeat));
-    let detector = all(|protocol| !matches!(protocol, ProtocolConfig::Rumor(_)));
+pub fn usual(scenarios: &[&Scenario]) -> Vec<String> {
+    let all = |has: fn(&Scenario) -> bool| scenarios.iter().all(|scenario| has(scenario));
+    let mission = all(|scenario| scenario.protocol.mission().is_some());
+    let detector = all(Scenario::runs_detector);
     let keys = [
         ("steps_to_completion", mission),
         ("bandwidth.tx_bytes_per_step.mean", true),
@@ -54,12 +53,13 @@ pub fn help(known: &[String]) -> String {
     format!("figures are {}, and bandwidth.by_topic.<topic>.*", keys.join(", "))
 }
 
-/// Figures that a study names and not all of its settings have; `also` says how many further ones it names.
-pub fn problems(plan: &Plan, also: usize) -> Vec<Problem> {
-    let known = common(plan);
+/// Figures that a study names and not all of its `scenarios` have: `named`, the first as its `figure` and `also` further ones, and the
+/// `axes` of its Pareto front.
+pub fn problems(scenarios: &[&Scenario], named: &[String], also: usize, axes: Option<&[String; 2]>) -> Vec<Problem> {
+    let known = common(scenarios);
     let places = std::iter::once("figure".to_owned()).chain((0..also).map(|index| format!("also[{index}]")));
-    let named = places.zip(plan.figures.iter());
-    let drawn = plan.pareto.iter().flat_map(|axes| (0..).zip(axes));
+    let named = places.zip(named);
+    let drawn = axes.into_iter().flat_map(|axes| (0..).zip(axes));
     let drawn = drawn.map(|(axis, key): (usize, &String)| (format!("pareto[{axis}]"), key));
     let all = named.chain(drawn).filter(|(_, key)| !known.contains(key));
     all.map(|(place, key)| Problem::new(&place, unknown(key, &known), help(&known)))

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::design::{combinations, is_name, labels, name};
 use super::{Study, figures};
-use crate::scenario::checks::Problem;
+use crate::kind::Problem;
 use crate::scenario::file::{contents, question};
 use crate::scenario::path::{FieldPath, follow};
 use crate::scenario::read::{between, document};
@@ -98,7 +98,7 @@ pub fn load_study(path: &Path) -> Result<Plan, Report> {
         warnings: Warnings::default(),
         settings,
     };
-    let problems = figures::problems(&plan, study.also.len());
+    let problems = figures::problems(&plan.scenarios(), &plan.figures, study.also.len(), plan.pareto.as_ref());
     if problems.is_empty() {
         Ok(plan)
     } else {
@@ -154,11 +154,16 @@ pub fn plan_of_files<P: AsRef<Path>>(files: &[P]) -> Result<Plan, Report> {
         trials_place: None,
         warnings: Warnings::default(),
     };
-    plan.figures = figures::usual(&plan);
+    plan.figures = figures::usual(&plan.scenarios());
     Ok(plan)
 }
 
 impl Plan {
+    /// The scenarios of its settings.
+    fn scenarios(&self) -> Vec<&Scenario> {
+        self.settings.iter().map(|setting| &setting.scenario).collect()
+    }
+
     /// Compares these figures instead.
     ///
     /// # Errors
@@ -167,7 +172,7 @@ impl Plan {
         if !keys.is_empty() {
             self.figures = keys.to_vec();
         }
-        let known = figures::common(&self);
+        let known = figures::common(&self.scenarios());
         let unknown = self.figures.iter().filter(|key| !known.contains(key));
         let diagnostics: Vec<_> = unknown
             .map(|key| Diagnostic {
@@ -317,7 +322,7 @@ impl File<'_> {
     }
 
     fn diagnose(&self, problem: Problem) -> Diagnostic {
-        let path = Some(problem.path.to_string());
+        let path = Some(problem.path.clone());
         let Some(root) = tree::read(&self.text).0 else {
             return Diagnostic {
                 message: problem.message,

@@ -2,7 +2,7 @@
 
 use super::design::{combinations, count, is_name, labels, name, places};
 use super::{DesignConfig, FactorConfig, Study};
-use crate::scenario::checks::Problem;
+use crate::kind::Problem;
 use crate::scenario::limits;
 use crate::scenario::path::FieldPath;
 

@@ -1,12 +1,11 @@
 //! What is allowed and hardly meant: settings that can do nothing, or not what their author will have had in mind. Each is
 //! a warning, said with its place and its remedy; a scenario that has some is run all the same.
 
-mod mission;
 mod place;
 mod time;
 
-use super::checks::Problem;
-use super::{ProtocolConfig, Scenario, needs};
+use super::{Scenario, needs};
+use crate::kind::Problem;
 use crate::metrics::MetricsConfig;
 use crate::motion::MotionConfig;
 use crate::radio::{LossConfig, SensingConfig};
@@ -17,7 +16,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
     found.extend(losses(scenario));
     found.extend(time::warnings(scenario));
     found.extend(place::warnings(scenario));
-    found.extend(mission::warnings(scenario));
+    found.extend(scenario.protocol.warnings(&scenario.sections(), scenario.completion()));
     found.extend(needs::warnings(scenario));
     found
 }
@@ -51,13 +50,10 @@ fn unread(scenario: &Scenario) -> Vec<Problem> {
         motion, metrics, radio, ..
     } = scenario;
     let defaults = MotionConfig::default();
-    let wanders = scenario.wander.speed() > 0.0;
-    let (protocol, senses, is_mission) = match scenario.protocol {
-        ProtocolConfig::Backbone(_) => ("Backbone", true, true),
-        ProtocolConfig::Heartbeat => ("Heartbeat", false, false),
-        ProtocolConfig::Rumor(_) => ("Rumor", false, true),
-    };
-    let moves = senses || wanders;
+    let protocol = scenario.protocol.name();
+    let senses = scenario.protocol.senses();
+    let is_mission = scenario.protocol.mission().is_some();
+    let moves = scenario.moves();
     let quiet = SensingConfig::default();
     let no_hold = metrics.hold != MetricsConfig::default().hold && !is_mission;
     let nowhere = "no robot moves: see `wander`";

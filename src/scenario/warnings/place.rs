@@ -1,17 +1,12 @@
 //! Swarms whose robots stand too near, too far or too much apart.
 
+use crate::kind::{InPieces, Problem};
 use crate::motion::DeployConfig;
-use crate::protocol::wander::WanderConfig;
 use crate::radio::LossConfig;
-use crate::scenario::checks::Problem;
-use crate::scenario::{ProtocolConfig, Scenario};
+use crate::scenario::Scenario;
 
 /// By how many times a range may exceed the arena's diagonal before that is said.
 const FAR: f64 = 3.0;
-/// The share of trials that may begin in pieces before that is said: where robots must reach each other, and where it only
-/// shows in figures of connectivity.
-const IN_PIECES: f64 = 0.05;
-const MOSTLY_IN_PIECES: f64 = 0.5;
 
 /// What looks wrong with where robots are and how far they hear.
 pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
@@ -72,13 +67,9 @@ fn cluster(scenario: &Scenario) -> Option<Problem> {
 
 /// Deployments that leave no room now and then, or that fall into pieces.
 fn deployment(scenario: &Scenario) -> Vec<Problem> {
-    let still = scenario.wander == WanderConfig::Still;
     let by_chance = !matches!(scenario.swarm.deploy, DeployConfig::At(_));
-    let (bearable, what) = match scenario.protocol {
-        ProtocolConfig::Backbone(_) => (IN_PIECES, "robots out of reach of the root are never recruited"),
-        ProtocolConfig::Rumor(_) if still => (IN_PIECES, "a rumour stays in its own"),
-        ProtocolConfig::Heartbeat if still && by_chance => (MOSTLY_IN_PIECES, "robots hear only those of their own"),
-        ProtocolConfig::Rumor(_) | ProtocolConfig::Heartbeat => return Vec::new(),
+    let Some(InPieces { bearable, what }) = scenario.protocol.in_pieces(&scenario.sections()) else {
+        return Vec::new();
     };
     let Some(survey) = scenario.site().survey(scenario.radio.range.get()) else {
         return Vec::new();

@@ -2,11 +2,11 @@
 
 use crate::faults::{self, Effect, Stage, WhenConfig};
 use crate::geometry::Vec2;
+use crate::kind::{Problem, Shared};
 use crate::protocol::detector::DetectorConfig;
 use crate::protocol::gossip::GossipConfig;
 use crate::protocol::wander::WanderConfig;
-use crate::scenario::checks::Problem;
-use crate::scenario::{ProtocolConfig, Scenario};
+use crate::scenario::Scenario;
 
 /// Latencies that stand for all.
 const QUANTILES: u32 = 200;
@@ -52,10 +52,7 @@ fn samples(scenario: &Scenario) -> Option<Problem> {
 
 /// Whether robots watch each other.
 fn watches(scenario: &Scenario) -> bool {
-    match scenario.protocol {
-        ProtocolConfig::Backbone(_) | ProtocolConfig::Heartbeat => scenario.detector != DetectorConfig::None,
-        ProtocolConfig::Rumor(_) => false,
-    }
+    scenario.runs_detector() && scenario.detector != DetectorConfig::None
 }
 
 /// Topics that are repeated less than twice in a trial, or at another interval than the one that is set.
@@ -79,13 +76,19 @@ fn intervals(scenario: &Scenario) -> Vec<Problem> {
         defaults.request.interval,
     );
     let relay = ("gossip.relay.interval", gossip.relay.interval, defaults.relay.interval);
-    let (topics, in_steps): (&[_], bool) = match &scenario.protocol {
-        ProtocolConfig::Backbone(_) => (&[status, strand, request, relay], true),
-        ProtocolConfig::Heartbeat => (&[status], true),
-        ProtocolConfig::Rumor(rumor) => (&[relay], !rumor.is_poisson()),
-    };
+    let heeded = scenario.protocol.heeds(&scenario.sections());
+    let topics = [
+        (Shared::Status, status),
+        (Shared::Strand, strand),
+        (Shared::Request, request),
+        (Shared::Relay, relay),
+    ];
     let mut found = Vec::new();
-    for (path, interval, default) in topics {
+    for (setting, (path, interval, default)) in topics {
+        if !heeded.contains(&setting) {
+            continue;
+        }
+        let in_steps = setting != Shared::Relay || scenario.protocol.relays_in_steps();
         let seconds = interval.get();
         if seconds > time_limit {
             let message = format!("`{path}` is {seconds} s, and a trial ends at {time_limit} s: nothing is said twice");
@@ -187,10 +190,7 @@ fn idle_faults(scenario: &Scenario) -> Vec<Problem> {
     let stage = Stage {
         time_limit,
         half: half.add_scalar(-scenario.motion.body_radius.get()),
-        reserved: match scenario.protocol {
-            ProtocolConfig::Backbone(_) => Some((0, "root")),
-            ProtocolConfig::Heartbeat | ProtocolConfig::Rumor(_) => None,
-        },
+        reserved: scenario.protocol.reserved(),
     };
     let help = "remove it, or change what keeps it from acting";
     let also = ["time_limit", "arena.size"];

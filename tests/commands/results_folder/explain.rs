@@ -6,11 +6,11 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use desim::engine::ActorId;
+use desim::experiment::trace_trial;
 use desim::export::sealed;
 use desim::radio::LossCause;
 use desim::report::{Explanation, Fate};
 use desim::scenario::{Scenario, parse};
-use desim::simulation::trace_trial;
 use desim::text::{Style, columns};
 use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;

@@ -1,8 +1,9 @@
 //! The backbone under every detector.
 
+use desim::experiment::run_trial;
 use desim::metrics::{Outcome, TrialRecord};
 use desim::scenario::parse;
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 const DETECTORS: [&str; 6] = [

@@ -10,9 +10,10 @@ mod phi;
 mod swim;
 mod timeout;
 
+use desim::experiment::run_trial;
 use desim::metrics::{Summary, TrialRecord};
 use desim::scenario::parse;
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 const ROBOTS: u32 = 20;

@@ -7,10 +7,11 @@
 //! other: with n trials of numerators aᵢ and denominators bᵢ its standard error is √(Σ(aᵢ − R bᵢ)²/(n(n−1))) / b̄. A figure must lie
 //! within four standard errors, and those must be small enough to tell it from the share of time in which robots are in range.
 
+use desim::experiment::run_trial;
 use desim::metrics::TrialRecord;
 use desim::metrics::detection::Verdict;
 use desim::scenario::parse;
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 use super::{Channel, assert_near, bernoulli, gilbert, moments};

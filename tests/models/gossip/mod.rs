@@ -5,9 +5,10 @@ mod piggyback;
 mod rumours;
 mod walkers;
 
+use desim::experiment::run_trial;
 use desim::metrics::TrialRecord;
 use desim::scenario::{Scenario, parse};
-use desim::simulation::{DriverKind, run_trial};
+use desim::simulation::DriverKind;
 
 /// The scenario in `text`.
 fn scenario(text: &str) -> Scenario {

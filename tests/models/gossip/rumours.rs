@@ -145,7 +145,12 @@ fn robots_that_are_down_at_the_end_count_neither_among_the_informed_nor_among_th
         let records = run(&scenario, 4);
         let unaware = |record: &TrialRecord| record.spread[0].informed.iter().any(Option::is_none);
         assert!(records.iter().all(unaware));
-        Summary::of("down", scenario.protocol.topics(), &["ignorant", "knowing"], &records)
+        Summary::of(
+            "down",
+            scenario.protocol.all_topics(),
+            &["ignorant", "knowing"],
+            &records,
+        )
     };
     let spread = summary("[5, 6]").spread.expect("rumours spread");
     assert_eq!(spread.informed_ratio.estimate.value, Some(1.0));

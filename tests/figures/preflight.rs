@@ -2,9 +2,9 @@
 
 use proptest::prelude::*;
 
-use super::*;
-use crate::protocol::detector::Link;
-use crate::scenario::parse;
+use desim::predict::{Holds, Preflight};
+use desim::protocol::detector::Link;
+use desim::scenario::{Scenario, parse};
 
 fn scenario(text: &str) -> Scenario {
     let text = format!("Scenario(name: \"expected\", time_limit: 400.0, {text})");

@@ -1,0 +1,87 @@
+//! From a scenario to the record of one of its trials.
+
+use tokio_util::sync::CancellationToken;
+
+use crate::engine::{ActorId, Span};
+use crate::kind::{Start, Swarm, TrialError};
+use crate::metrics::TrialRecord;
+use crate::motion::deploy;
+use crate::scenario::Scenario;
+use crate::simulation::{DriverKind, Setup};
+
+/// Runs trial number `trial` of `scenario`, until `stop` is cancelled.
+///
+/// # Errors
+/// If the robots find no room, or the run stops before its end.
+pub fn run_trial(
+    scenario: &Scenario,
+    trial: u32,
+    driver: DriverKind,
+    stop: &CancellationToken,
+) -> Result<TrialRecord, TrialError> {
+    run(scenario, trial, None, driver, stop)
+}
+
+/// Runs a trial as [`run_trial`] does, and follows every status of `robot` into [`TrialRecord::trace`]. Whoever is
+/// followed, the run is the same, digest and all.
+///
+/// # Errors
+/// As [`run_trial`].
+pub fn trace_trial(
+    scenario: &Scenario,
+    trial: u32,
+    robot: ActorId,
+    stop: &CancellationToken,
+) -> Result<TrialRecord, TrialError> {
+    run(scenario, trial, Some(robot), DriverKind::Inline, stop)
+}
+
+fn run(
+    scenario: &Scenario,
+    trial: u32,
+    trace: Option<ActorId>,
+    driver: DriverKind,
+    stop: &CancellationToken,
+) -> Result<TrialRecord, TrialError> {
+    let setup = Setup {
+        trace,
+        ..setup(scenario, trial)
+    };
+    let streams = setup.streams();
+    let swarm = &scenario.swarm;
+    let body_radius = scenario.motion.body_radius.get();
+    let poses = deploy(&swarm.deploy, &scenario.arena, swarm.robots, body_radius, &streams)?;
+    let swarm = Swarm {
+        poses: &poses,
+        sections: scenario.sections(),
+        streams,
+    };
+    let start = Start {
+        setup,
+        poses: poses.clone(),
+        driver,
+        stop,
+    };
+    Ok(scenario.protocol.run(&swarm, start)?)
+}
+
+fn setup(scenario: &Scenario, trial: u32) -> Setup {
+    Setup {
+        seed: scenario.seed,
+        trial,
+        time_limit: Span::from_secs(scenario.time_limit.get()),
+        arena: scenario.arena.clone(),
+        motion: scenario.motion.clone(),
+        control: scenario.control.clone(),
+        radio: scenario.radio.clone(),
+        piggyback: scenario.gossip.piggyback,
+        faults: scenario.faults.clone(),
+        metrics: scenario.metrics.clone(),
+        detector: scenario.detector.clone(),
+        status_interval: scenario.circumstances().status_interval,
+        trace: None,
+        mission: None,
+        rumors: 0,
+        completion: scenario.completion(),
+    }
+}

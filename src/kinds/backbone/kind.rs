@@ -1,0 +1,134 @@
+//! The backbone as scenarios name it.
+
+use super::{Backbone, BackboneConfig, Role, checks, swarm};
+use crate::kind::{Expected, Goal, Holds, InPieces, Kind, Prediction, Problem, Sections, Shared, Swarm, Targets};
+use crate::metrics::{Mission, MissionTarget};
+use crate::protocol::CompletionConfig;
+
+impl Kind for BackboneConfig {
+    const NAME: &'static str = "Backbone";
+    type Robot = Backbone;
+
+    fn robots(&self, robots: &Swarm<'_>) -> Vec<Backbone> {
+        let Sections {
+            gossip,
+            detector,
+            control,
+            ..
+        } = robots.sections;
+        swarm(self, gossip, detector, control, robots.poses, robots.streams)
+    }
+
+    /// Every target held, with its links (paper eqs. 2 to 5).
+    fn goal(&self, robots: &[Backbone]) -> Goal {
+        let Some(first) = robots.first() else { return Goal::None };
+        let targets = self.targets().into_iter().map(|(position, links)| MissionTarget {
+            position,
+            links: u32::from(links),
+        });
+        Goal::Targets(Mission {
+            targets: targets.collect(),
+            reach: self.movement_threshold.get(),
+            link_limit: self.critical_distance.get(),
+            root: first.root(),
+            worker_role: Role::Worker.index(),
+        })
+    }
+
+    fn mission(&self) -> Option<&'static str> {
+        Some("targets must be held")
+    }
+
+    fn completion(&self) -> Option<CompletionConfig> {
+        self.completion
+    }
+
+    fn completed_by(&self, completion: CompletionConfig) -> Option<Self> {
+        Some(Self {
+            completion: Some(completion),
+            ..self.clone()
+        })
+    }
+
+    fn heeds(&self, _: &Sections<'_>) -> &'static [Shared] {
+        &[
+            Shared::Status,
+            Shared::StatusSend,
+            Shared::Strand,
+            Shared::Request,
+            Shared::Relay,
+            Shared::Piggyback,
+            Shared::Detector,
+        ]
+    }
+
+    fn unheeded(&self, setting: Shared) -> &'static str {
+        match setting {
+            Shared::RelayFanOut => "its orders are for everyone",
+            _ => "it says itself how robots move",
+        }
+    }
+
+    fn problems(&self, sections: &Sections<'_>) -> Vec<(String, String)> {
+        self.own_problems(sections.robots, sections.radio.range.get())
+    }
+
+    fn conflicts(&self, sections: &Sections<'_>) -> Vec<Problem> {
+        checks::conflicts(self, sections)
+    }
+
+    fn warnings(&self, sections: &Sections<'_>, completion: CompletionConfig) -> Vec<Problem> {
+        checks::warnings(self, sections, completion)
+    }
+
+    fn targets(&self) -> Option<Targets> {
+        Some(Targets {
+            places: self.targets(),
+            near: self.movement_threshold.get(),
+            robots: self.robots_needed(),
+        })
+    }
+
+    fn reserved(&self) -> Option<(u32, &'static str)> {
+        Some((0, "root"))
+    }
+
+    fn in_pieces(&self, _: &Sections<'_>) -> Option<InPieces> {
+        Some(InPieces::harmful("robots out of reach of the root are never recruited"))
+    }
+
+    fn frames_a_second(&self, sections: &Sections<'_>) -> f64 {
+        let gossip = sections.gossip;
+        let period = sections.control.period.get();
+        let topics = [gossip.strand.interval, gossip.request.interval, gossip.relay.interval];
+        topics.iter().map(|interval| 1.0 / interval.get().max(period)).sum()
+    }
+
+    fn status_bytes(&self) -> Option<f64> {
+        Some(4.0)
+    }
+
+    fn predict(&self, _: &Sections<'_>) -> Expected {
+        let needed = Prediction {
+            name: "robots_needed",
+            what: "robots needed",
+            value: self.robots_needed() as f64,
+            unit: "robots",
+            accuracy: 0.0,
+            holds: Holds::AtEnd,
+            formula: "1 + Σ (1 + links · (⌈(distance − d_δ)/d_s⌉ − 1))",
+            assumes: "a root, a worker a target, chains as short as they can be and no failure".into(),
+        };
+        let expected = Expected {
+            predictions: vec![needed],
+            ..Expected::default()
+        };
+        let end = "chains end in straight lines, but where the free robots come to rest has no closed form";
+        let requests = "how often robots ask, refuse and ask again depends on how chains grow";
+        let strands = "a strand has a byte for each robot of its chain so far: its size is the history of the mission";
+        expected
+            .without("degree_at_end", "neighbours at the end", end)
+            .without("request", "request bytes", requests)
+            .without("strand", "strand bytes", strands)
+    }
+}
