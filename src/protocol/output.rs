@@ -3,7 +3,7 @@
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::Vec2;
 
-use super::{MessageSize, Role, TimerId, Topic};
+use super::names::{MessageSize, Role, TimerId, Topic};
 
 /// What a robot answers when it has woken.
 #[derive(Debug)]
@@ -143,7 +143,7 @@ pub enum Note {
     },
     /// It believes so no longer.
     Trusts(ActorId),
-    /// It read a message that told it nothing new ([`Reception::duplicate`]), in the role that it had last reported: to be noted
+    /// It read a message that told it nothing new ([`Reception::duplicate`](super::Reception::duplicate)), in the role that it had last reported: to be noted
     /// before a change of role.
     Duplicate {
         /// Its topic.

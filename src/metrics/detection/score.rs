@@ -209,8 +209,13 @@ impl Scorer {
                 self.cross_until(now);
                 self.trust(now, observer, subject);
             }
-            Note::Role(_) | Note::Target(_) | Note::Parents(_) | Note::Duplicate { .. } | Note::Informed { .. } => {}
-            Note::Count { .. } | Note::Value { .. } => {}
+            Note::Role(_)
+            | Note::Target(_)
+            | Note::Parents(_)
+            | Note::Duplicate { .. }
+            | Note::Informed { .. }
+            | Note::Count { .. }
+            | Note::Value { .. } => {}
         }
     }
 

@@ -87,10 +87,7 @@ fn what_is_told_of_each_robot_adds_up_to_the_table_and_to_the_ledger() {
     // Statuses are for all in range: none is lost for want of it.
     let causes = LossCause::ALL.into_iter().zip(lost_in_all);
     let occurs = |(cause, lost)| (lost > 0) == (cause != LossCause::BelowSensitivity);
-    assert!(
-        told_in_all > 1000 && causes.map(occurs).all(|as_expected| as_expected),
-        "{lost_in_all:?}"
-    );
+    assert!(told_in_all > 1000 && { causes }.all(occurs), "{lost_in_all:?}");
 }
 
 /// Statuses take 0.25 s. Those of robot 0 that are sent from 1 s to 1.4 s are lost, so the last one arrives at 1.15 s and it is

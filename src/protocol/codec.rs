@@ -1,4 +1,4 @@
-//! A codec for protocols that do not write their own.
+//! What codecs may complain of, and a codec for protocols that do not write their own.
 
 use std::marker::PhantomData;
 
@@ -7,7 +7,27 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tokio_util::codec::{Decoder, Encoder};
 
-use super::CodecError;
+/// Payload bytes that are no message of the protocol.
+#[derive(Debug, thiserror::Error)]
+pub enum CodecError {
+    /// The bytes end before the message does.
+    #[error("payload ends after {0} bytes, in the middle of a message")]
+    Truncated(usize),
+    /// A byte has a value that its field does not know.
+    #[error("{field} cannot be {value}")]
+    Unknown {
+        /// The field's name.
+        field: &'static str,
+        /// The byte found.
+        value: u8,
+    },
+    /// The bytes do not make sense to [`Serialised`], or it cannot write the message.
+    #[error("no message as postcard writes it: {0}")]
+    Serialised(#[from] postcard::Error),
+    /// Required by the codec traits; reading memory does not fail.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
 
 /// Writes and reads any message that serde does, in the format of postcard: no field names, whole numbers of seven bits a byte,
 /// so that a small number costs one. `type Codec = Serialised<Message>` is all that a protocol says.

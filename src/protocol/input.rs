@@ -1,0 +1,118 @@
+//! What a robot is told: who it is, why it wakes, and the frames that reached it.
+
+use rand_philox::Philox;
+
+use super::names::{MessageSize, TimerId, Topic};
+use super::output::Note;
+use crate::engine::{ActorId, SimTime};
+use crate::geometry::{Pose, Vec2};
+
+/// What a robot is told before the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Its own number, from 0.
+    pub me: ActorId,
+    /// How many robots the swarm has, itself included: their numbers are below.
+    pub robots: usize,
+}
+
+/// Why a robot is awake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wake {
+    /// Its control period came round.
+    ControlStep,
+    /// A timer that it had set ran out, at exactly this instant.
+    Timer(TimerId),
+    /// A frame arrived, in scenarios that wake robots so.
+    Reception,
+}
+
+/// What a robot is told when it wakes.
+#[derive(Debug)]
+pub struct Input<M> {
+    /// Its own number.
+    pub me: ActorId,
+    /// Why it is awake.
+    pub wake: Wake,
+    /// The frames that arrived since it last woke, in order of arrival.
+    pub inbox: Vec<Reception<M>>,
+    /// Where it is, as it senses it.
+    pub pose: Pose,
+    /// Near bodies at a control step (robots, walls, obstacles, within the proximity range): the vector from this
+    /// robot's edge to the nearest point of each, in the arena's axes, metres.
+    pub proximity: Vec<Vec2>,
+    /// Randomness for this wake alone.
+    pub random: Philox,
+}
+
+/// A message as its receivers get it: decoded once, for its bytes are the same at every receiver, and then copied into each
+/// inbox, so that reading an inbox is reading one stretch of memory.
+#[derive(Clone, Debug)]
+pub struct Frame<M> {
+    /// Who sent it (the frame's header carries it).
+    pub sender: ActorId,
+    /// Its number among the sender's messages, which is that of its frame where each has one of its own.
+    pub sequence: u32,
+    /// When its transmission began.
+    pub sent_at: SimTime,
+    /// Its payload in bytes, headers not included.
+    pub payload_bytes: u16,
+    /// Whether another message for this robot came before it in the same frame: then that one answers for the frame's header.
+    pub rides: bool,
+    /// Whom it is for.
+    pub address: Address,
+    /// What its payload says.
+    pub message: M,
+}
+
+impl<M> Frame<M> {
+    /// How long it is.
+    #[inline]
+    #[must_use]
+    pub const fn size(&self) -> MessageSize {
+        MessageSize {
+            payload_bytes: self.payload_bytes,
+            rides: self.rides,
+        }
+    }
+}
+
+/// Whom a message is for, as the robot sees it that reads it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Address {
+    /// All that hear it.
+    Everyone,
+    /// The reader alone.
+    Me,
+    /// Another robot: the reader overhears it ([`Protocol::OVERHEARS`](super::Protocol::OVERHEARS)).
+    Another,
+}
+
+/// A frame that reached this robot.
+#[derive(Debug)]
+pub struct Reception<M> {
+    /// When it arrived.
+    pub at: SimTime,
+    /// The frame.
+    pub frame: Frame<M>,
+    /// Where the sender was when it sent, relative to this robot then, in the arena's axes, metres: situated
+    /// communication (paper section 3.1), with the scenario's noise.
+    pub displacement: [f32; 2],
+}
+
+impl<M> Reception<M> {
+    /// What the metrics should know if it told its receiver nothing new on its `topic`.
+    #[must_use]
+    pub const fn duplicate(&self, topic: Topic) -> Note {
+        Note::Duplicate {
+            topic,
+            size: self.frame.size(),
+        }
+    }
+
+    /// [`displacement`](Self::displacement) as a vector.
+    #[must_use]
+    pub fn displacement(&self) -> Vec2 {
+        Vec2::new(f64::from(self.displacement[0]), f64::from(self.displacement[1]))
+    }
+}
