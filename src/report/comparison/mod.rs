@@ -6,6 +6,7 @@ mod tables;
 mod words;
 
 pub use words::describe;
+#[cfg(feature = "command")]
 pub(super) use words::{fitted, label, stopping};
 
 use std::path::Path;
