@@ -98,6 +98,7 @@
 //! models that do not know each other; a [`kind`] is a protocol that a scenario can name, and [`kinds`] are those that it can; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
 //! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
 
+#[cfg(feature = "command")]
 pub mod cli;
 pub mod engine;
 pub mod experiment;

@@ -4,6 +4,7 @@ mod comparison;
 mod explanation;
 mod failures;
 mod grid;
+#[cfg(feature = "command")]
 mod html;
 mod layout;
 mod missed;
@@ -15,6 +16,7 @@ mod terminal;
 
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
+#[cfg(feature = "command")]
 pub use html::{PAGE_MARK, PageInput, page, study_page};
 pub use layout::message;
 pub use missed::Asked;
