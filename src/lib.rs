@@ -117,4 +117,5 @@ pub mod report;
 pub mod scenario;
 pub mod simulation;
 pub mod statistics;
+pub mod testing;
 pub mod text;

@@ -87,7 +87,8 @@ pub fn write(
     }
     let tables = tables.finish().map_err(failed("write", parts.dir()))?;
     files.extend(tables.into_iter().map(str::to_owned));
-    let summary = Summary::of(&scenario.name, names.topics, names.roles, &records);
+    let summary =
+        Summary::of(&scenario.name, names.topics, names.roles, &records).noting(&scenario.protocol.figures(), &records);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());
     for name in files {

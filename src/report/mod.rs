@@ -8,6 +8,7 @@ mod grid;
 mod html;
 mod layout;
 mod missed;
+mod noted;
 mod number;
 mod preflight;
 mod spread;

@@ -29,8 +29,12 @@ mod tests {
 
     #[test]
     fn a_fault_is_a_line_with_its_place_and_a_line_with_what_to_do() {
-        let text = "Scenario(name: \"a\", time_limit: 10.0, swarm: (robots: 2, deploy: Uniform),\n  protocol: Heartbeat, radio: (loss: Bernoulli(1.5)))";
-        let report = parse("a.ron", text, &[]).unwrap_err().to_string();
+        let unit = crate::kinds::all().into_iter().find(|kind| kind.is_unit);
+        let protocol = unit.expect("such a protocol is shipped").name;
+        let text = format!(
+            "Scenario(name: \"a\", time_limit: 10.0, swarm: (robots: 2, deploy: Uniform),\n  protocol: {protocol}, radio: (loss: Bernoulli(1.5)))"
+        );
+        let report = parse("a.ron", &text, &[]).unwrap_err().to_string();
         let lines: Vec<&str> = report.lines().collect();
         assert_eq!(lines.len(), 2, "{report}");
         assert!(lines[0].starts_with("a.ron:2:") && lines[0].contains("1.5"), "{report}");
