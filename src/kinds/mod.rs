@@ -1,5 +1,5 @@
 //! The kinds of protocols that scenarios may name: those that desim ships, each in a room of its own, and those that others
-//! [add](add).
+//! [`add`].
 //!
 //! This registry is the one place that names them. Which settings of `gossip` each heeds:
 //!

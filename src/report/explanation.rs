@@ -52,7 +52,7 @@ pub struct Explained {
     pub trusted_s: Option<f64>,
     /// When it ceased to count as a mistake without trust, seconds: one of the two failed or left the other's range, or the trial ended.
     pub cut_off_s: Option<f64>,
-    /// What to make of it: a name of [`Verdict`].
+    /// What to make of it: a name of [`Verdict`](detection::Verdict).
     pub verdict: &'static str,
     /// What it was due to: a name of [`detection::Cause`].
     pub cause: &'static str,
@@ -82,7 +82,7 @@ pub struct Status {
 pub enum Fate {
     /// It was lost.
     Lost {
-        /// Why: a name of [`LossCause`].
+        /// Why: a name of [`LossCause`](crate::radio::LossCause).
         cause: &'static str,
     },
     /// The observer was out of range.
@@ -91,7 +91,7 @@ pub enum Fate {
     UnderWay {
         /// When it was to arrive.
         arrives_s: f64,
-        /// Why it was lost on its arrival, if it was: a name of [`LossCause`].
+        /// Why it was lost on its arrival, if it was: a name of [`LossCause`](crate::radio::LossCause).
         lost: Option<&'static str>,
     },
     /// It arrived.

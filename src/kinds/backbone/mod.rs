@@ -82,7 +82,7 @@ struct Told {
 /// the root; the robot nearest to each target is its worker; all others are free.
 ///
 /// # Panics
-/// If there are fewer robots than a root and a worker for each target, which [`BackboneConfig::problems`] reports.
+/// If there are fewer robots than a root and a worker for each target, which [`BackboneConfig::own_problems`] reports.
 #[must_use]
 pub fn swarm(
     config: &BackboneConfig,
