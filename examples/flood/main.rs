@@ -33,11 +33,8 @@ enum Message {
     Answer(Question),
 }
 
-#[derive(Default)]
 struct Robot {
-    ttl: u8,
-    ask_probability: f64,
-    me: ActorId,
+    flood: Flood,
     robots: u32,
     /// When each question was asked, until it is answered.
     asked: Vec<Option<SimTime>>,
@@ -46,21 +43,20 @@ struct Robot {
 }
 
 impl Robot {
-    fn hear(&mut self, reception: &Reception<Message>, output: &mut Output<Message>) {
-        let from = reception.frame.sender;
+    fn hear(&mut self, me: ActorId, reception: &Reception<Message>, output: &mut Output<Message>) {
         match reception.frame.message {
-            Message::Ask(question, ..) if question.0 == self.me || self.ways.contains_key(&question) => {
+            Message::Ask(question, ..) if question.0 == me || self.ways.contains_key(&question) => {
                 output.notes.push(reception.duplicate(Topic(0)));
             }
             Message::Ask(question, whom, ttl) => {
-                self.ways.insert(question, from);
-                if whom == self.me {
-                    output.send(from, Message::Answer(question));
+                self.ways.insert(question, reception.frame.sender);
+                if whom == me {
+                    output.send(reception.frame.sender, Message::Answer(question));
                 } else if ttl > 1 {
                     output.broadcast(Message::Ask(question, whom, ttl - 1));
                 }
             }
-            Message::Answer(question) if question.0 != self.me => {
+            Message::Answer(question) if question.0 != me => {
                 output.send(self.ways[&question], Message::Answer(question));
             }
             Message::Answer(question) => {
@@ -85,13 +81,15 @@ impl Protocol for Robot {
     }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Message>, output: &mut Output<Message>) {
-        input.inbox.iter().for_each(|reception| self.hear(reception, output));
-        if input.wake == Wake::ControlStep && input.random.random_bool(self.ask_probability) {
-            let whom = (self.me.0 + input.random.random_range(1..self.robots.max(2))) % self.robots;
-            let question = (self.me, self.asked.len() as u32);
+        for reception in &input.inbox {
+            self.hear(input.me, reception, output);
+        }
+        if input.wake == Wake::ControlStep && input.random.random_bool(self.flood.ask_probability.get()) {
+            let whom = (input.me.0 + input.random.random_range(1..self.robots.max(2))) % self.robots;
+            let question = (input.me, self.asked.len() as u32);
             self.asked.push(Some(now));
             output.count("asked", 1);
-            output.broadcast(Message::Ask(question, ActorId(whom), self.ttl));
+            output.broadcast(Message::Ask(question, ActorId(whom), self.flood.ttl));
         }
     }
 }
@@ -101,23 +99,18 @@ impl Kind for Flood {
     type Robot = Robot;
 
     fn robots(&self, swarm: &Swarm<'_>) -> Vec<Robot> {
-        let (ttl, ask_probability) = (self.ttl, self.ask_probability.get());
-        let robots = swarm.poses.len() as u32;
-        swarm.each(|me| Robot {
-            ttl,
-            ask_probability,
-            me,
-            robots,
-            ..Robot::default()
+        swarm.each(|_| Robot {
+            flood: self.clone(),
+            robots: swarm.poses.len() as u32,
+            asked: Vec::new(),
+            ways: BTreeMap::new(),
         })
     }
 
     fn figures(&self) -> Vec<NotedFigure> {
         let success = NotedFigure::share("success", "questions answered", "answered", "asked");
-        vec![
-            success.higher(),
-            NotedFigure::mean("delay_s", "delay of an answer", "s", "delay"),
-        ]
+        let delay = NotedFigure::mean("delay_s", "delay of an answer", "s", "delay");
+        vec![success.higher(), delay]
     }
 }
 

@@ -74,7 +74,7 @@ fn noted(page: &mut Page, summary: &Summary) {
     let Some(noted) = &summary.noted else { return };
     page.heading("Protocol");
     for (_, figure_of) in &noted.0 {
-        page.entry("", &format!("{}: {}", figure_of.name, noted_words(figure_of)));
+        page.words(&format!("{}: {}", figure_of.name, noted_words(figure_of)));
     }
 }
 
