@@ -15,6 +15,7 @@ mod place;
 #[cfg_attr(not(feature = "parquet"), path = "no_read.rs")]
 mod read;
 mod results;
+mod scene;
 mod study;
 #[cfg(feature = "parquet")]
 mod table;
@@ -26,10 +27,10 @@ pub use folder::{Contents, Folder, PAGE};
 pub use held::{FileEntry, sealed};
 pub use manifest::{Difference, Manifest, TrialEntry};
 pub use names::Names;
-pub use picture::Scene;
 pub use place::{FolderError, json};
 pub use read::NameLists;
 pub use results::{Results, ResultsError};
+pub use scene::Scene;
 pub use study::{StudyFolder, StudyManifest};
 pub use tables::Tables;
 pub use write::{Pictures, WriteError, write};

@@ -14,8 +14,7 @@ use crate::faults::Faults;
 use crate::metrics::Recorder;
 use crate::metrics::detection::CopyFate;
 use crate::motion::World;
-use crate::protocol::CodecError;
-use crate::protocol::{Address, Frame, MessageSize, Output, Protocol, Reception, Topic};
+use crate::protocol::{Address, CodecError, Frame, MessageSize, Output, Protocol, Reception, Topic};
 use crate::radio::{Fate, Listener, LossCause, Medium};
 
 /// From an instant to the next.

@@ -2,9 +2,10 @@
 
 use svg::Document;
 
+use super::super::scene::Scene;
 use super::canvas::Canvas;
 use super::style::{self, FAILED, LINK, TARGET};
-use super::{Scene, obstacles, subtitle};
+use super::{obstacles, subtitle};
 use crate::geometry::{Vec2, at_most};
 use crate::metrics::{RobotState, TrialRecord};
 

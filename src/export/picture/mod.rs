@@ -11,24 +11,10 @@ mod trajectories;
 pub use pareto::draw as pareto;
 
 use super::folder::PICTURES;
+use super::scene::Scene;
 use crate::geometry::Vec2;
 use crate::metrics::{Outcome, TrialRecord};
-use crate::motion::{ArenaConfig, ObstacleConfig};
-
-/// What stands still in every picture of a scenario.
-#[derive(Clone, Debug)]
-pub struct Scene {
-    /// Name of the scenario, for titles.
-    pub name: String,
-    /// The arena and its obstacles.
-    pub arena: ArenaConfig,
-    /// Communication range, metres.
-    pub range: f64,
-    /// Places of the mission's targets, metres from the centre.
-    pub targets: Vec<Vec2>,
-    /// Names of the roles, in the order of their numbers.
-    pub roles: &'static [&'static str],
-}
+use crate::motion::ObstacleConfig;
 
 impl Scene {
     /// The pictures of a trial, with their kinds. Where its robots ended: by role, with the links within range (as in the paper's figure
@@ -40,11 +26,6 @@ impl Scene {
             (last, format!("{}\n", final_state::draw(self, record))),
             (paths, format!("{}\n", trajectories::draw(self, record))),
         ]
-    }
-
-    /// Name of a role.
-    fn role(&self, number: u8) -> &'static str {
-        self.roles.get(usize::from(number)).copied().unwrap_or("unknown")
     }
 }
 

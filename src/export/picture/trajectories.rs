@@ -2,9 +2,10 @@
 
 use svg::Document;
 
+use super::super::scene::Scene;
 use super::canvas::{ARENA_PIXELS, Canvas};
 use super::style::{self, Marker, Shape, Stroke, TARGET};
-use super::{Scene, obstacles, subtitle};
+use super::{obstacles, subtitle};
 use crate::geometry::Vec2;
 use crate::metrics::TrialRecord;
 
