@@ -1,19 +1,11 @@
 //! What became of the statuses of late: kept so that a suspicion can be traced to them, and no longer.
 
 use crate::engine::{ActorId, SimTime, Span, prefetch, prefetch_end};
+use crate::happenings::Inbox;
 use crate::protocol::Reception;
 use crate::radio::LossCause;
 
 use super::record::Missed;
-
-/// Frames at an observer, of all topics.
-#[derive(Debug)]
-pub struct Inbox<'a, M> {
-    /// Those that it reads now.
-    pub read: &'a [Reception<M>],
-    /// Those that are on their way to it.
-    pub waiting: &'a [Reception<M>],
-}
 
 /// Statuses sent and copies of them lost, for the last while. What is delivered leaves no trace here: that is by far the
 /// most, and a status that was sent, not lost and is not under way was either read or out of range.
