@@ -100,6 +100,7 @@
 //! models that do not know each other; [`happenings`] is what observers of a run are told; a [`kind`] is a protocol that a scenario can name, and [`kinds`] are those that it can; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
 //! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
 
+#[cfg(feature = "command")]
 pub mod cli;
 pub mod engine;
 pub mod experiment;
@@ -119,4 +120,5 @@ pub mod report;
 pub mod scenario;
 pub mod simulation;
 pub mod statistics;
+pub mod testing;
 pub mod text;

@@ -16,6 +16,7 @@ pub mod explain;
 mod failure;
 mod interrupt;
 pub mod log;
+pub mod new;
 mod output;
 mod page_file;
 mod progress;
@@ -37,6 +38,7 @@ use compare::CompareArguments;
 use explain::ExplainArguments;
 use failure::FAULTY_INPUT;
 pub use failure::Failure;
+use new::NewArguments;
 use report::ReportArguments;
 use scenario::ScenarioArguments;
 use shown::Format;
@@ -124,6 +126,9 @@ pub enum Command {
     /// Tell in words and times why a robot was suspected in a finished trial
     #[command(long_about = explain::LONG_ABOUT)]
     Explain(ExplainArguments),
+    /// Write a scenario to begin with, or a crate with a protocol of your own
+    #[command(long_about = new::LONG_ABOUT)]
+    New(NewArguments),
     /// Print the JSON Schema of scenario files, for editors
     Schema {
         /// That of study files instead
@@ -189,6 +194,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
         }
         Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::New(arguments) => new::run(&arguments, &mut out),
         Command::Schema { study } => Ok(schema::schema(study, &mut out)?),
     }
 }

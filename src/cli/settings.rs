@@ -57,7 +57,8 @@ impl<'a> Settings<'a> {
         let registries: Vec<Registry> = plan
             .settings
             .iter()
-            .map(|setting| Registry::of(setting.scenario.protocol.all_topics()))
+            .map(|setting| &setting.scenario.protocol)
+            .map(|protocol| Registry::of(protocol.all_topics()).noting(&protocol.figures()))
             .collect();
         let figures = common(&registries);
         let compared = study.comparison(manifest)?;

@@ -9,6 +9,7 @@ mod folder;
 mod held;
 mod manifest;
 mod names;
+#[cfg_attr(not(feature = "command"), path = "no_picture.rs")]
 mod picture;
 mod place;
 #[cfg_attr(not(feature = "parquet"), path = "no_read.rs")]

@@ -106,7 +106,8 @@ impl Results {
         if !others.is_empty() {
             let [topics, roles]: [Vec<&str>; 2] =
                 [&all.names.topics, &all.names.roles].map(|names| names.iter().map(String::as_str).collect());
-            all.summary = Summary::of(&all.scenario.name, &topics, &roles, &all.records);
+            all.summary = Summary::of(&all.scenario.name, &topics, &roles, &all.records)
+                .noting(&all.scenario.protocol.figures(), &all.records);
         }
         Ok(all)
     }

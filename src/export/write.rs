@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::folder::{Contents, Folder, PICTURES, SUMMARY};
+use super::folder::{Contents, Folder, SUMMARY};
 use super::manifest::{Manifest, TrialEntry};
 use super::names::Names;
 use super::picture::Scene;
@@ -87,7 +87,8 @@ pub fn write(
     }
     let tables = tables.finish().map_err(failed("write", parts.dir()))?;
     files.extend(tables.into_iter().map(str::to_owned));
-    let summary = Summary::of(&scenario.name, names.topics, names.roles, &records);
+    let summary =
+        Summary::of(&scenario.name, names.topics, names.roles, &records).noting(&scenario.protocol.figures(), &records);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());
     for name in files {
@@ -103,15 +104,12 @@ pub fn write(
 }
 
 /// Draws a trial and answers the names of the files.
-fn draw(folder: &Folder, scene: &Scene, record: &TrialRecord) -> Result<[String; 2], FolderError> {
-    let names = PICTURES.map(|name| format!("{name}_{}.svg", record.trial));
-    for (name, picture) in names
-        .iter()
-        .zip([scene.final_state(record), scene.trajectories(record)])
-    {
-        folder.stage(name, format!("{picture}\n").as_bytes())?;
-    }
-    Ok(names)
+fn draw(folder: &Folder, scene: &Scene, record: &TrialRecord) -> Result<Vec<String>, FolderError> {
+    let staged = scene.draw(record).into_iter().map(|(kind, picture)| {
+        let name = format!("{kind}_{}.svg", record.trial);
+        folder.stage(&name, picture.as_bytes()).map(|()| name)
+    });
+    staged.collect()
 }
 
 fn entry(part: &FinishedTrial) -> TrialEntry {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 
 use super::{Expected, InPieces, Kind, Problem, Sections, Shared, Start, Swarm, Targets};
-use crate::metrics::TrialRecord;
+use crate::metrics::{NotedFigure, TrialRecord};
 use crate::protocol::detector::DetectorConfig;
 use crate::protocol::{CompletionConfig, Protocol};
 use crate::simulation::RunError;
@@ -46,6 +46,7 @@ pub trait AnyKind: Any + Debug + Send + Sync + erased_serde::Serialize {
     fn status_bytes(&self) -> Option<f64>;
     fn sends_statuses_alone(&self, sections: &Sections<'_>) -> bool;
     fn predict(&self, sections: &Sections<'_>) -> Expected;
+    fn figures(&self) -> Vec<NotedFigure>;
 }
 
 erased_serde::serialize_trait_object!(AnyKind);
@@ -158,6 +159,10 @@ impl<K: Kind> AnyKind for K {
 
     fn predict(&self, sections: &Sections<'_>) -> Expected {
         Kind::predict(self, sections)
+    }
+
+    fn figures(&self) -> Vec<NotedFigure> {
+        Kind::figures(self)
     }
 }
 

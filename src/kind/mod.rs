@@ -104,7 +104,7 @@ pub use sections::{Sections, Swarm};
 pub use shared::Shared;
 pub use start::{Start, TrialError};
 
-use crate::metrics::TrialRecord;
+use crate::metrics::{NotedFigure, TrialRecord};
 use crate::protocol::detector::DetectorConfig;
 use crate::protocol::{CompletionConfig, Protocol};
 use crate::simulation::RunError;
@@ -246,6 +246,11 @@ pub trait Kind: Clone + Debug + PartialEq + Serialize + DeserializeOwned + JsonS
     fn predict(&self, sections: &Sections<'_>) -> Expected {
         let _ = sections;
         Expected::default()
+    }
+
+    /// Figures of what robots count and measure: in the summary, the report, the page, and to be compared in studies as `noted.<key>`.
+    fn figures(&self) -> Vec<NotedFigure> {
+        Vec::new()
     }
 
     /// Names of the topics in use where robots run `detector`.

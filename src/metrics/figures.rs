@@ -9,6 +9,7 @@ use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
 
+use super::noted_figure::NotedFigure;
 use super::record::{TrafficRow, TrialRecord};
 use super::summary::detection::{detection_times, mistake_durations, mistakes};
 use super::summary::faults::mending;
@@ -67,14 +68,14 @@ impl Sample {
         (self.part[1] > 0.0).then(|| self.part[0] / self.part[1])
     }
 
-    fn ratio(part: Part) -> Self {
+    pub(super) fn ratio(part: Part) -> Self {
         Self {
             part,
             ..Self::default()
         }
     }
 
-    fn plain(value: Option<f64>) -> Self {
+    pub(super) fn plain(value: Option<f64>) -> Self {
         Self::ratio(value.map_or([0.0; 2], |value| [value, 1.0]))
     }
 
@@ -121,6 +122,16 @@ impl Registry {
         registry.healing();
         registry.gossip(topics);
         registry
+    }
+
+    /// The same, and those of what the protocol's robots note.
+    #[must_use]
+    pub fn noting(mut self, noted: &[NotedFigure]) -> Self {
+        for &noted in noted {
+            let reading: Reading = Rc::new(move |record| noted.read(record));
+            self.figures.push((noted.figure(), reading));
+        }
+        self
     }
 
     /// What the figures are, in order.

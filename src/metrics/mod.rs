@@ -11,6 +11,7 @@ mod healing;
 mod latency;
 mod mission;
 mod noted;
+mod noted_figure;
 mod record;
 mod recorder;
 mod reports;
@@ -26,6 +27,7 @@ pub use connectivity::{Chains, Graph};
 pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget};
 pub use noted::{Amount, Noted, Values};
+pub use noted_figure::NotedFigure;
 pub use record::{
     ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotBytes, RobotState, SeriesEntry,
     TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Volume,

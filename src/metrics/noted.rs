@@ -80,6 +80,19 @@ impl Values {
         }
     }
 
+    /// These and `other` values together.
+    #[must_use]
+    pub fn and(mut self, other: Self) -> Self {
+        self.count += other.count;
+        self.sum = (self.sum + other.sum).clamp(f64::MIN, f64::MAX);
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+        for (bucket, count) in other.buckets {
+            *self.buckets.entry(bucket).or_default() += count;
+        }
+        self
+    }
+
     fn add(&mut self, value: f64) {
         self.count += 1;
         self.sum = (self.sum + value).clamp(f64::MIN, f64::MAX);

@@ -4,9 +4,11 @@ mod comparison;
 mod explanation;
 mod failures;
 mod grid;
+#[cfg(feature = "command")]
 mod html;
 mod layout;
 mod missed;
+mod noted;
 mod number;
 mod preflight;
 mod spread;
@@ -15,6 +17,7 @@ mod terminal;
 
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
+#[cfg(feature = "command")]
 pub use html::{PAGE_MARK, PageInput, page, study_page};
 pub use layout::message;
 pub use missed::Asked;

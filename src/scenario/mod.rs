@@ -4,11 +4,13 @@
 //! line worked in, and answer a [`Scenario`] that holds, or a [`Report`] of everything that is wrong with it, each
 //! with its place. On the way from text to scenario: `token` and `tree` know what stands where, `overrides` and
 //! `source` work overrides into the text, `read` has serde make sense of it, `checks` finds what no field shows on its
-//! own, `warnings` what is allowed and hardly meant, `explain` and `shape` say what would be right, `report` shows it.
+//! own, `warnings` what is allowed and hardly meant, `explain` and `shape` say what would be right, `report` and `drawn` show it.
 
 mod checks;
 mod detector;
 mod document;
+#[cfg_attr(not(feature = "command"), path = "plain.rs")]
+mod drawn;
 mod explain;
 mod file;
 #[cfg(test)]

@@ -4,14 +4,9 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, Severity, SourceCode};
-
-use super::limits;
 use super::lines::{line_of, line_start};
-use crate::text::{Style, clean, clean_lines, columns};
-
-/// Longest line that is shown around an error, bytes.
-const LONGEST_LINE: usize = 400;
+use super::{drawn, limits};
+use crate::text::Style;
 
 /// One thing that is wrong, or looks so, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,8 +32,10 @@ pub struct Place {
     pub column: usize,
     /// What the label under the line says.
     pub label: String,
-    span: Range<usize>,
-    text: Arc<str>,
+    /// The bytes of `text` that it is, on one line.
+    pub(super) span: Range<usize>,
+    /// What `name` holds.
+    pub(super) text: Arc<str>,
 }
 
 impl Place {
@@ -58,12 +55,6 @@ impl Place {
             text: Arc::clone(text),
         }
     }
-
-    fn is_on_a_short_line(&self) -> bool {
-        let before = line_start(&self.text, self.span.start);
-        let line = self.text[before..].find('\n').unwrap_or(self.text.len() - before);
-        line <= LONGEST_LINE
-    }
 }
 
 /// The last place at or before `at` where `text` can be cut.
@@ -78,104 +69,6 @@ impl fmt::Display for Diagnostic {
 }
 
 impl std::error::Error for Diagnostic {}
-
-/// A diagnostic as miette draws it, safe to show.
-#[derive(Debug)]
-struct Drawn {
-    message: String,
-    help: Option<String>,
-    severity: Severity,
-    source: Option<(NamedSource<String>, LabeledSpan)>,
-}
-
-impl Drawn {
-    fn new(diagnostic: &Diagnostic, severity: Severity, width: usize) -> Self {
-        let place = diagnostic.place.as_ref();
-        let shown = place.filter(|place| place.is_on_a_short_line());
-        let kind = if severity == Severity::Warning { "warning: " } else { "" };
-        let message = match place {
-            Some(place) if shown.is_none() => {
-                let Place { name, line, column, .. } = place;
-                format!("{kind}{name}:{line}:{column}: {}", diagnostic.message)
-            }
-            _ => format!("{kind}{}", diagnostic.message),
-        };
-        Self {
-            message: clean_lines(&message).into_owned(),
-            help: diagnostic.help.as_ref().map(|help| clean_lines(help).into_owned()),
-            severity,
-            source: shown.map(|place| source(place, width)),
-        }
-    }
-}
-
-/// The text of a place and its label, lines cut off where there are no columns for them, but not before the label's end. Signs are
-/// longer than what they stand for, so the span is counted again.
-fn source(place: &Place, width: usize) -> (NamedSource<String>, LabeledSpan) {
-    // Before each line stands its number, as wide as that of the next, and a bar.
-    let room = width.saturating_sub(" │ ".chars().count() + 1 + (place.line + 1).to_string().len());
-    let Range { start, end } = place.span;
-    let parts = [0..start, start..end, end..place.text.len()];
-    let [before, within, after] = parts.map(|part| clean_lines(&place.text[part]));
-    let line = before.rfind('\n').map_or(0, |newline| newline + 1);
-    let (above, line) = before.split_at(line);
-    let taken = columns(line) + columns(&within);
-    let cut_off = |line: &str| cut(line, room);
-    let mut text: String = above.split_inclusive('\n').map(cut_off).collect();
-    let span = (text.len() + line.len(), within.len());
-    text.push_str(line);
-    text.push_str(&within);
-    let mut rest = after.split_inclusive('\n');
-    text.extend(rest.next().map(|rest| cut(rest, room.saturating_sub(taken))));
-    text.extend(rest.map(cut_off));
-    let label = LabeledSpan::new(Some(clean(&place.label).into_owned()), span.0, span.1);
-    (NamedSource::new(clean(&place.name), text), label)
-}
-
-/// A line, or the end of one, within `room` columns.
-fn cut(line: &str, room: usize) -> String {
-    let (words, newline) = line.strip_suffix('\n').map_or((line, ""), |words| (words, "\n"));
-    if columns(words) <= room {
-        return line.to_owned();
-    }
-    let mut kept = String::new();
-    for letter in words.chars() {
-        kept.push(letter);
-        if columns(&kept) >= room {
-            kept.pop();
-            break;
-        }
-    }
-    kept + "…" + newline
-}
-
-impl fmt::Display for Drawn {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.message)
-    }
-}
-
-impl std::error::Error for Drawn {}
-
-impl miette::Diagnostic for Drawn {
-    fn severity(&self) -> Option<Severity> {
-        Some(self.severity)
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let help = self.help.as_ref()?;
-        Some(Box::new(help))
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.source.as_ref().map(|(source, _)| source as &dyn SourceCode)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (_, label) = self.source.as_ref()?;
-        Some(Box::new(std::iter::once(label.clone())))
-    }
-}
 
 /// Everything that is wrong with a scenario: one diagnostic or more.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -199,7 +92,7 @@ impl Report {
     /// The report as people read it, each diagnostic with the line that it is about.
     #[must_use]
     pub fn render(&self, style: Style) -> String {
-        render(&self.diagnostics, self.more, Severity::Error, style)
+        render(&self.diagnostics, self.more, Kind::Fault, style)
     }
 }
 
@@ -219,32 +112,34 @@ impl Warnings {
     /// The warnings as people read them, each with the line that it is about.
     #[must_use]
     pub fn render(&self, style: Style) -> String {
-        render(&self.diagnostics, self.more, Severity::Warning, style)
+        render(&self.diagnostics, self.more, Kind::Warning, style)
     }
 }
 
-fn render(diagnostics: &[Diagnostic], more: usize, severity: Severity, style: Style) -> String {
-    let theme = if style.colour {
-        GraphicalTheme::unicode()
-    } else {
-        GraphicalTheme::unicode_nocolor()
-    };
-    let handler = GraphicalReportHandler::new_themed(theme)
-        .with_width(style.width)
-        .with_links(false);
-    let mut text = String::new();
-    for diagnostic in diagnostics {
-        // Writing to a string does not fail; were it to, the message alone still says what is wrong.
-        if handler
-            .render_report(&mut text, &Drawn::new(diagnostic, severity, style.width))
-            .is_err()
-        {
-            text.push_str(&clean(&diagnostic.message));
+/// What a diagnostic is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Something that is wrong.
+    Fault,
+    /// Something that looks so.
+    Warning,
+}
+
+impl Kind {
+    /// What stands before the message.
+    pub(super) const fn prefix(self) -> &'static str {
+        match self {
+            Self::Fault => "",
+            Self::Warning => "warning: ",
         }
     }
+}
+
+fn render(diagnostics: &[Diagnostic], more: usize, kind: Kind, style: Style) -> String {
+    let mut text = drawn::all(diagnostics, kind, style);
     if more > 0 {
         text.extend(["  and ", &more.to_string(), " more\n"]);
-    } else if severity == Severity::Error && diagnostics.len() >= limits::DIAGNOSTICS {
+    } else if kind == Kind::Fault && diagnostics.len() >= limits::DIAGNOSTICS {
         text.push_str("  and perhaps more: reading ends here\n");
     }
     text

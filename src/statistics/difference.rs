@@ -24,7 +24,7 @@ pub fn difference(estimator: Estimator, parts: [&[Part]; 2], pairs: bool) -> Est
         return none;
     };
     let ci95 = match estimator {
-        Estimator::Mean | Estimator::Fraction | Estimator::Count | Estimator::Times => {
+        Estimator::Mean | Estimator::Signed | Estimator::Fraction | Estimator::Count | Estimator::Times => {
             of_means(estimator, b - a, [&first, &second], pairs)
         }
         Estimator::Median => of_intervals(estimates, 0.0),
@@ -48,7 +48,7 @@ fn of_means(estimator: Estimator, value: f64, [first, second]: [&Terms; 2], pair
     };
     match moments {
         Some(moments) if moments.variance > 0.0 => wider(value, moments),
-        Some(_) if matches!(estimator, Estimator::Mean | Estimator::Fraction) => [Some(value); 2],
+        Some(_) if matches!(estimator, Estimator::Mean | Estimator::Signed | Estimator::Fraction) => [Some(value); 2],
         _ => [None; 2],
     }
 }

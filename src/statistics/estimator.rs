@@ -13,12 +13,14 @@ use super::{Ci95, Estimate, normal_quantile};
 const TAIL_OF_TIMES: f64 = 0.018;
 
 /// What kind of number a figure is: that decides how its interval is made. All but medians are ratios of sums over trials; of a plain mean
-/// each trial adds its value over 1. None is negative.
+/// each trial adds its value over 1. None but a [`Signed`](Self::Signed) one is negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Estimator {
     /// The mean of a quantity: Student's t, corrected for skewness. Equal values are their own interval: such a figure is fixed.
     Mean,
+    /// The mean of a quantity that may be negative: as [`Mean`](Self::Mean), and not kept above 0.
+    Signed,
     /// The mean of a quantity from 0 to 1, within which its interval is kept: else as [`Mean`](Self::Mean).
     Fraction,
     /// The mean of whole numbers: as [`Mean`](Self::Mean), but that a few trials gave equal numbers does not show that others will, so
@@ -70,24 +72,33 @@ impl Estimator {
         };
         Estimate {
             value: Some(value),
-            ci95: ci95.map(|end| end.map(|end| end.clamp(0.0, self.most()))),
+            ci95: ci95.map(|end| end.map(|end| end.clamp(self.least(), self.most()))),
             n,
         }
+    }
+
+    /// The least value that there can be.
+    fn least(self) -> f64 {
+        if self == Self::Signed { f64::NEG_INFINITY } else { 0.0 }
     }
 
     /// The greatest value that there can be.
     fn most(self) -> f64 {
         match self {
             Self::Fraction | Self::Share | Self::ShareOf => 1.0,
-            Self::Mean | Self::Count | Self::Times | Self::Median | Self::Rate | Self::Recurrence => f64::INFINITY,
+            Self::Mean | Self::Signed | Self::Count | Self::Times | Self::Median | Self::Rate | Self::Recurrence => {
+                f64::INFINITY
+            }
         }
     }
 
     fn interval(self, value: f64, moments: Moments, parts: &[Part]) -> Ci95 {
         match self {
-            Self::Mean | Self::Fraction if moments.variance <= 0.0 => [Some(value); 2],
+            Self::Mean | Self::Signed | Self::Fraction if moments.variance <= 0.0 => [Some(value); 2],
             Self::Count | Self::Times if moments.variance <= 0.0 => [None; 2],
-            Self::Mean | Self::Fraction | Self::Count => skewed(value, moments, tail_of_few(moments.trials)),
+            Self::Mean | Self::Signed | Self::Fraction | Self::Count => {
+                skewed(value, moments, tail_of_few(moments.trials))
+            }
             Self::Times => skewed(value, moments, tail_of_few(moments.trials).min(TAIL_OF_TIMES)),
             Self::Share => share(value, moments, parts, None),
             Self::ShareOf => share(value, moments, parts, Some(parts.iter().map(|part| part[1]).sum())),
@@ -180,6 +191,9 @@ mod tests {
         assert_interval(mean(&x), 6.833_707_705_847_82, 11.166_292_294_152_18);
         // Two: scipy.stats.t.interval(0.965, 1, loc=12, scale=1), and nothing below 0
         assert_interval(mean(&[11.0, 13.0]), 0.0, 30.170_806_702_388_695);
+        // But of a quantity that may be negative
+        let signed = Estimator::Signed.estimate(&plain(&[11.0, 13.0]));
+        assert_interval(signed, -6.170_806_702_388_695, 30.170_806_702_388_695);
     }
 
     #[test]

@@ -1,9 +1,7 @@
 //! Figures of whole runs against their closed forms, where the end of a run, few trials or large numbers make them hard.
 
-use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
 use desim::engine::Span;
 use desim::experiment::run_trial;
 use desim::metrics::comparison::{Comparison, Design, Trials};
@@ -11,8 +9,6 @@ use desim::metrics::figures::{Figure, Registry, Sample, pool};
 use desim::metrics::{Summary, TrialRecord};
 use desim::scenario::{Override, Scenario, load, parse};
 use desim::simulation::DriverKind;
-use serde_json::Value;
-use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;
 
 use crate::shipped;
@@ -155,8 +151,14 @@ fn copies_under_way_at_the_end_bias_neither_delivery_nor_latency() {
     );
 }
 
+#[cfg(all(feature = "command", feature = "parquet"))]
 #[test]
 fn latencies_that_add_up_to_centuries_are_summed_written_and_read_back() {
+    use std::fs;
+
+    use serde_json::Value;
+    use tempfile::tempdir;
+
     // 5 robots × 4 others × some 300 statuses of 4e6 s each: 2.4e10 s, 2.4e19 ns, above what 64 bits hold.
     let dir = tempdir().unwrap();
     let text = "Scenario(name: \"mail\", trials: 2, time_limit: 300.0, arena: (size: (1.0, 1.0)), swarm: (robots: 5, deploy: Uniform), \
@@ -164,7 +166,7 @@ fn latencies_that_add_up_to_centuries_are_summed_written_and_read_back() {
                 radio: (range: 2.0, loss: None, latency: Gamma(shape: 2.0, scale: 2e6)))";
     fs::write(dir.path().join("mail.ron"), text).unwrap();
     let desim = |arguments: &[&str]| {
-        let mut command = Command::cargo_bin("desim").unwrap();
+        let mut command = assert_cmd::Command::cargo_bin("desim").unwrap();
         let output = command
             .current_dir(dir.path())
             .args(arguments)

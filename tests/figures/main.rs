@@ -5,7 +5,9 @@ mod shipped;
 
 mod detection;
 mod estimators;
+#[cfg(all(feature = "command", feature = "parquet"))]
 mod failed_missions;
 mod metrics;
+#[cfg(feature = "command")]
 mod predictions;
 mod preflight;

@@ -3,6 +3,7 @@
 #[path = "../shipped/mod.rs"]
 mod shipped;
 
+#[cfg(feature = "command")]
 mod files;
 mod fuzz;
 mod gossip;

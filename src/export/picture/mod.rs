@@ -10,8 +10,7 @@ mod trajectories;
 
 pub use pareto::draw as pareto;
 
-use svg::Document;
-
+use super::folder::PICTURES;
 use crate::geometry::Vec2;
 use crate::metrics::{Outcome, TrialRecord};
 use crate::motion::{ArenaConfig, ObstacleConfig};
@@ -32,17 +31,15 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Where the robots of `record` ended: by role, with the links within range (as in the paper's figure 2) and the
-    /// chains to each target.
+    /// The pictures of a trial, with their kinds. Where its robots ended: by role, with the links within range (as in the paper's figure
+    /// 2) and the chains to each target. And their paths, by their roles at the end.
     #[must_use]
-    pub fn final_state(&self, record: &TrialRecord) -> Document {
-        final_state::draw(self, record)
-    }
-
-    /// The paths of the robots of `record`, by their roles at the end.
-    #[must_use]
-    pub fn trajectories(&self, record: &TrialRecord) -> Document {
-        trajectories::draw(self, record)
+    pub fn draw(&self, record: &TrialRecord) -> Vec<(&'static str, String)> {
+        let [last, paths] = PICTURES;
+        vec![
+            (last, format!("{}\n", final_state::draw(self, record))),
+            (paths, format!("{}\n", trajectories::draw(self, record))),
+        ]
     }
 
     /// Name of a role.

@@ -132,6 +132,7 @@ impl Parts {
 /// fixed by the scenario.
 fn estimator(design: &Design, figure: usize) -> Estimator {
     match design.figures[figure].estimator {
+        Estimator::Signed => Estimator::Signed,
         Estimator::Mean | Estimator::Fraction => Estimator::Mean,
         _ => Estimator::Count,
     }

@@ -5,24 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::contrasts::Contrasts;
 use super::effect::{Dependence, Effect, Interaction, LevelMean, Parts};
 use super::pair::{Pair, differ, gain_of};
+use super::verdict::Verdict;
 use super::{Design, SIGNIFICANT, Trials};
 use crate::statistics::{Tested, fewest_trials, holm, least_of_groups, least_of_pairs, testable};
-
-/// What to make of a difference.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// The setting is better than the other.
-    Better,
-    /// It is worse.
-    Worse,
-    /// The trials show no difference, which does not mean that there is none.
-    NoDetectableDifference,
-    /// So few trials, or so few that differ, cannot show a difference, however large.
-    CannotTell,
-    /// One of the two has no value of the figure.
-    NotComparable,
-}
 
 /// The tests over which p-values are adjusted, and those that are none of them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

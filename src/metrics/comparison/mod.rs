@@ -6,12 +6,14 @@ mod effect;
 mod family;
 mod pair;
 mod setting;
+mod verdict;
 
 pub use contrasts::{Contrasts, Grid, Levels, TooFew};
 pub use effect::{Dependence, Effect, Interaction, LevelMean};
-pub use family::{Family, Verdict};
+pub use family::Family;
 pub use pair::{Gain, Pair, Plan, Tests};
 pub use setting::{Estimated, Setting, Survival};
+pub use verdict::Verdict;
 
 use serde::{Deserialize, Serialize};
 

@@ -23,8 +23,9 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::engine::Span;
 
-use super::figures::Registry;
+use super::figures::{Registry, Sample};
 use super::latency::LatencyHistogram;
+use super::noted_figure::NotedFigure;
 use super::record::{Outcome, TrialRecord};
 use crate::statistics::{Estimate, Estimator, Observation, median_survival};
 pub(super) use quantity::DIMENSIONLESS;
@@ -80,6 +81,9 @@ pub struct Summary {
     pub duplicates: Duplicates,
     /// Failure detection, against the truth.
     pub detection: Detection,
+    /// The protocol's own figures, of what its robots count and measure; absent where it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noted: Option<Named<NotedSummary>>,
     /// Control steps simulated, over all trials.
     pub steps: Quantity<u64>,
     /// Time simulated, over all trials.
@@ -158,6 +162,7 @@ impl Summary {
             spread: SpreadSummary::of(figures),
             duplicates: Duplicates::of(topics, figures),
             detection: Detection::of(figures),
+            noted: None,
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
                 unit: STEPS.into(),
@@ -168,6 +173,36 @@ impl Summary {
             },
         }
     }
+}
+
+impl Summary {
+    /// The same, with the protocol's own figures of what its robots noted in `records`.
+    #[must_use]
+    pub fn noting(mut self, figures: &[NotedFigure], records: &[TrialRecord]) -> Self {
+        let summary = |place: usize| {
+            let noted: &NotedFigure = &figures[place];
+            let samples: Vec<Sample> = records.iter().map(|record| noted.read(record)).collect();
+            NotedSummary {
+                name: noted.name.to_owned(),
+                estimate: noted.figure().estimate(&samples),
+                unit: noted.unit.into(),
+            }
+        };
+        self.noted = (!figures.is_empty()).then(|| Named::of(figures.iter().map(|noted| noted.key), summary));
+        self
+    }
+}
+
+/// A protocol's own figure.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NotedSummary {
+    /// What reports call it.
+    pub name: String,
+    /// The figure over trials.
+    #[serde(flatten)]
+    pub estimate: Estimate,
+    /// Its unit.
+    pub unit: Unit,
 }
 
 /// The figures of a protocol over the trials to be summarised: the ones that comparisons show.

@@ -8,6 +8,7 @@ mod tables;
 mod words;
 
 pub use describe::describe;
+#[cfg(feature = "command")]
 pub(super) use words::{fitted, label, stopping};
 
 use std::path::Path;

@@ -4,6 +4,7 @@ use super::PageInput;
 use super::detection;
 use crate::metrics::summary::Spread;
 use crate::predict;
+use crate::report::noted::noted_words;
 use crate::report::number::{self, count, estimate, figure, percent, seconds};
 use crate::report::surprises;
 
@@ -64,6 +65,11 @@ pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
     if summary.duplicates.any() {
         let share = estimate(&summary.duplicates.total, percent);
         rows.push(("duplicates in the messages delivered", share));
+    }
+    if let Some(noted) = &summary.noted {
+        let figures = input.scenario.protocol.figures();
+        let told = figures.iter().zip(&noted.0);
+        rows.extend(told.map(|(figure, (_, found))| (figure.name, noted_words(found))));
     }
     let surprises = predict::surprises(input.scenario, summary);
     for (together, why) in surprises::by_reason(&surprises) {

@@ -8,7 +8,7 @@ use crate::scenario::explain::nearest;
 /// Keys of the figures that every setting has.
 pub fn common(scenarios: &[&Scenario]) -> Vec<String> {
     let of = |scenario: &Scenario| -> Vec<String> {
-        let registry = Registry::of(scenario.protocol.all_topics());
+        let registry = Registry::of(scenario.protocol.all_topics()).noting(&scenario.protocol.figures());
         registry.figures().map(|figure| figure.key.clone()).collect()
     };
     let mut known: Option<Vec<String>> = None;

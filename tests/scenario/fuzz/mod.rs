@@ -9,6 +9,7 @@ use desim::scenario::{Override, Report, Scenario, parse, to_ron};
 
 use crate::shipped;
 
+#[cfg(feature = "command")]
 mod command;
 mod mutations;
 mod studies;
