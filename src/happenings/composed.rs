@@ -8,7 +8,8 @@ use crate::motion::World;
 use crate::protocol::{Input, Note, Output, Topic};
 use crate::radio::LossCause;
 
-/// The methods of an observer that hands on what it is told: `$tell!` says to whom.
+/// The methods of an observer that hands on what it is told: `$tell!` says to whom. What is told of every copy is always inlined: else
+/// the copy would be written to memory, for nobody.
 macro_rules! hand_on {
     ($tell:ident) => {
         #[inline]
@@ -31,17 +32,20 @@ macro_rules! hand_on {
             $tell!(self, spoke(now, robot, world));
         }
 
-        #[inline]
+        #[allow(clippy::inline_always)]
+        #[inline(always)]
         fn arrives(&mut self, copy: &Copy, at: SimTime) {
             $tell!(self, arrives(copy, at));
         }
 
-        #[inline]
+        #[allow(clippy::inline_always)]
+        #[inline(always)]
         fn lost(&mut self, copy: &Copy, cause: LossCause, at: SimTime) {
             $tell!(self, lost(copy, cause, at));
         }
 
-        #[inline]
+        #[allow(clippy::inline_always)]
+        #[inline(always)]
         fn delivered(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {
             $tell!(self, delivered(copy, at, read));
         }

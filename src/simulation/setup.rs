@@ -43,7 +43,7 @@ impl FromStr for DriverKind {
 }
 
 /// The observers of every run: what makes its record.
-type Books = ((Recorder, Digest), Option<StatusTrace>);
+type Books = (Recorder, Digest);
 
 /// The world that robots are put into.
 #[derive(Clone, Debug, Default)]
@@ -72,7 +72,7 @@ pub struct Setup {
     pub detector: DetectorConfig,
     /// The longest pause that a robot makes between two statuses; zero if it sends none.
     pub status_interval: Span,
-    /// A robot whose statuses are to be followed one by one, into [`TrialRecord::trace`].
+    /// A robot whose statuses are to be followed one by one, into [`TrialRecord::trace`]; the run is then driven inline.
     pub trace: Option<ActorId>,
     /// What counts as completion, if anything does.
     pub mission: Option<Mission>,
@@ -142,19 +142,39 @@ impl Setup {
             Robot(robot)
         };
         let robots = robots.into_iter().zip(0..).map(started).collect();
-        let trace = self.trace.zip(P::STATUS);
         let recorder = Recorder::new(self.layout::<P>(swarm), &self.metrics);
-        let trace = trace.map(|(robot, topic)| StatusTrace::new(robot, topic));
-        let observers = (((recorder, Digest::new()), trace), observer);
+        let books = (recorder, Digest::new());
         let run = async {
-            match driver {
-                DriverKind::Actors => self.run_with(poses, Actors::spawn(robots), observers, stop).await,
-                DriverKind::Inline => self.run_with(poses, Inline::new(robots), observers, stop).await,
+            match (self.trace.zip(P::STATUS), driver) {
+                // Traced or not is decided here, and not at every copy.
+                (Some((robot, topic)), _) => {
+                    let observers = (books, (StatusTrace::new(robot, topic), observer));
+                    let ended = self.run_with(poses, Inline::new(robots), observers, stop).await?;
+                    let Finished {
+                        mut record,
+                        robots,
+                        observer: (trace, observer),
+                    } = self.finished(ended);
+                    record.trace = Some(trace);
+                    Ok(Finished {
+                        record,
+                        robots,
+                        observer,
+                    })
+                }
+                (None, DriverKind::Actors) => {
+                    let robots = Actors::spawn(robots);
+                    let ended = self.run_with(poses, robots, (books, observer), stop).await?;
+                    Ok(self.finished(ended))
+                }
+                (None, DriverKind::Inline) => {
+                    let robots = Inline::new(robots);
+                    let ended = self.run_with(poses, robots, (books, observer), stop).await?;
+                    Ok(self.finished(ended))
+                }
             }
         };
-        block_on(run)
-            .map_err(RunError::Runtime)?
-            .map(|ended| self.finished(ended))
+        block_on(run).map_err(RunError::Runtime)?
     }
 
     async fn run_with<P: Protocol, D: Driver<Robot<P>>, O: Observer>(
@@ -182,7 +202,7 @@ impl Setup {
 
     /// What users get of a run that ended.
     fn finished<P, O>(&self, ended: Ended<P, (Books, O)>) -> Finished<P, O> {
-        let (((recorder, digest), trace), observer) = ended.observer;
+        let ((recorder, digest), observer) = ended.observer;
         let record = recorder.finish(RunEnd {
             trial: self.trial,
             seed: self.seed,
@@ -194,7 +214,7 @@ impl Setup {
             poses: ended.poses,
         });
         Finished {
-            record: TrialRecord { trace, ..record },
+            record,
             robots: ended.robots,
             observer,
         }

@@ -267,6 +267,20 @@ mod tests {
         assert_eq!((missed.under_way, missed.out_of_range), (1, 1), "40, and then 50");
     }
 
+    /// Statuses for one robot alone: the observer misses those for itself, and those for all.
+    #[test]
+    fn a_status_for_another_is_missed_by_nobody_else() {
+        let mut log = StatusLog::new(3, Span::from_secs(100.0));
+        let addressees = [None, Some(ActorId(2)), Some(OBSERVER), Some(ActorId(2)), None];
+        for (second, to) in (0..).zip(addressees) {
+            log.sent(at(f64::from(second)), SUBJECT, second, to);
+        }
+        let none = [] as [Reception<()>; 0];
+        let out_of_range = |observer| log.missed(at(9.0), [observer, SUBJECT], 0, &none).out_of_range;
+        assert_eq!(out_of_range(OBSERVER), 2, "2 for itself, 4 for all");
+        assert_eq!(out_of_range(ActorId(2)), 3, "1 and 3 for itself, 4 for all");
+    }
+
     #[test]
     fn what_was_sent_longer_ago_than_the_memory_does_not_count_however_much_of_it_is_kept() {
         let none = [] as [Reception<()>; 0];

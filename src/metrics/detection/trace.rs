@@ -71,22 +71,19 @@ impl StatusTrace {
         }
     }
 
-    fn follows(&self, sender: ActorId, topic: Topic) -> bool {
-        sender == self.robot && topic == self.topic
+    #[inline]
+    fn follows(&self, copy: &happenings::Copy) -> bool {
+        copy.sender == self.robot && copy.topic == self.topic
     }
 
-    /// A copy meets its fate; one that was to arrive may still be lost at its receiver.
-    fn fate(&mut self, copy: &happenings::Copy, fate: CopyFate) {
-        if !self.follows(copy.sender, copy.topic) {
-            return;
-        }
-        let Some(status) = self.status(copy.sequence) else {
-            return;
-        };
-        match status.copies.iter_mut().find(|known| known.receiver == copy.receiver) {
-            Some(known) => known.fate = fate,
+    // What it does is kept apart from what it asks, which every copy of every frame runs through. So also below.
+    #[cold]
+    fn fate(&mut self, sequence: u32, receiver: ActorId, fate: CopyFate) {
+        let Some(status) = self.status(sequence) else { return };
+        match status.copies.iter_mut().find(|copy| copy.receiver == receiver) {
+            Some(copy) => copy.fate = fate,
             None => status.copies.push(Copy {
-                receiver: copy.receiver,
+                receiver,
                 fate,
                 due: match fate {
                     CopyFate::Arrives(at) => Some(at),
@@ -94,6 +91,14 @@ impl StatusTrace {
                 },
                 read: None,
             }),
+        }
+    }
+
+    #[cold]
+    fn read(&mut self, sequence: u32, receiver: ActorId, read: Option<SimTime>) {
+        let Some(status) = self.status(sequence) else { return };
+        if let Some(copy) = status.copies.iter_mut().find(|copy| copy.receiver == receiver) {
+            copy.read = read;
         }
     }
 
@@ -110,7 +115,7 @@ impl Observer for StatusTrace {
     const IN_ORDER: bool = false;
 
     fn sent(&mut self, message: &Sent<'_>) {
-        if self.follows(message.sender, message.topic) {
+        if message.sender == self.robot && message.topic == self.topic {
             self.statuses.push(Status {
                 sequence: message.sequence,
                 sent_at: message.at,
@@ -131,23 +136,27 @@ impl Observer for StatusTrace {
         }
     }
 
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     fn arrives(&mut self, copy: &happenings::Copy, at: SimTime) {
-        self.fate(copy, CopyFate::Arrives(at));
-    }
-
-    fn lost(&mut self, copy: &happenings::Copy, cause: LossCause, _: SimTime) {
-        self.fate(copy, CopyFate::Lost(cause));
-    }
-
-    fn delivered(&mut self, copy: &happenings::Copy, _: SimTime, read: Option<SimTime>) {
-        if !self.follows(copy.sender, copy.topic) {
-            return;
+        if self.follows(copy) {
+            self.fate(copy.sequence, copy.receiver, CopyFate::Arrives(at));
         }
-        let Some(status) = self.status(copy.sequence) else {
-            return;
-        };
-        if let Some(known) = status.copies.iter_mut().find(|known| known.receiver == copy.receiver) {
-            known.read = read;
+    }
+
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn lost(&mut self, copy: &happenings::Copy, cause: LossCause, _: SimTime) {
+        if self.follows(copy) {
+            self.fate(copy.sequence, copy.receiver, CopyFate::Lost(cause));
+        }
+    }
+
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn delivered(&mut self, copy: &happenings::Copy, _: SimTime, read: Option<SimTime>) {
+        if self.follows(copy) {
+            self.read(copy.sequence, copy.receiver, read);
         }
     }
 }

@@ -34,7 +34,8 @@ impl Observer for Recorder {
         self.offered(message.topic, message.copies);
     }
 
-    #[inline]
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     fn lost(&mut self, copy: &Copy, cause: LossCause, _: SimTime) {
         self.lost(copy.receiver, copy.topic, cause, copy.size);
         if self.status == Some(copy.topic) {
@@ -42,7 +43,8 @@ impl Observer for Recorder {
         }
     }
 
-    #[inline]
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     fn delivered(&mut self, copy: &Copy, at: SimTime, _: Option<SimTime>) {
         self.delivered(copy.receiver, copy.topic, copy.size, copy.latency(at));
     }

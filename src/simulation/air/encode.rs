@@ -12,6 +12,7 @@ use crate::simulation::error::RunError;
 
 impl<P: Protocol> Air<P> {
     /// The bytes of `message`, and what its receivers make of them.
+    #[inline]
     pub(super) fn encode(
         &mut self,
         now: SimTime,

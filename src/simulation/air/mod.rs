@@ -149,6 +149,28 @@ impl<P: Protocol> Air<P> {
             };
             self.hindrances.extend(self.listeners.iter().map(hindrance));
         }
+        if output.sends.is_empty() && !self.piggyback {
+            // Nearly always: each message is for everyone, in a frame of its own.
+            for message in output.broadcasts.drain(..) {
+                let spoken = self.encode(now, sender, None, message, observer)?;
+                self.transmit::<false>(now, std::slice::from_ref(&spoken), faults, observer);
+            }
+        } else {
+            self.say_in_turn(now, sender, output, faults, observer)?;
+        }
+        observer.spoke(now, sender, world);
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn say_in_turn(
+        &mut self,
+        now: SimTime,
+        sender: ActorId,
+        output: &mut Output<P::Message>,
+        faults: &Faults,
+        observer: &mut impl Observer,
+    ) -> Result<(), RunError> {
         for (to, message) in output.drain_said() {
             let spoken = self.encode(now, sender, to, message, observer)?;
             if self.piggyback {
@@ -163,7 +185,6 @@ impl<P: Protocol> Air<P> {
             aboard.clear();
             self.aboard = aboard;
         }
-        observer.spoke(now, sender, world);
         Ok(())
     }
 }

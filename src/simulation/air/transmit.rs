@@ -78,9 +78,7 @@ fn copies_for<P: Protocol, const ADDRESSED: bool>(
 
 impl<P: Protocol> Air<P> {
     /// Transmits the messages `aboard`, one at least and all of one sender, as one frame.
-    // Inlined where a frame has one message, nearly always, the loops over what is aboard are gone. So also below.
-    #[allow(clippy::inline_always)]
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn send(
         &mut self,
         now: SimTime,
@@ -89,28 +87,31 @@ impl<P: Protocol> Air<P> {
         observer: &mut impl Observer,
     ) {
         if aboard.iter().all(|spoken| spoken.to.is_none()) {
-            self.transmit::<false>(now, aboard, faults, observer);
-        } else {
-            self.address(now, aboard, faults, observer);
+            return self.transmit::<false>(now, aboard, faults, observer);
+        }
+        self.give_up_far(aboard);
+        let everyone = P::OVERHEARS || aboard.iter().any(|spoken| spoken.to.is_none());
+        if !everyone {
+            self.narrow(aboard);
+        }
+        self.transmit::<true>(now, aboard, faults, observer);
+        if !everyone {
+            std::mem::swap(&mut self.listeners, &mut self.all_listeners);
+            std::mem::swap(&mut self.hindrances, &mut self.all_hindrances);
         }
     }
 
-    /// Transmits a frame of which a message at least is for one robot. Those hear it for whom something in it is; the radios of others
-    /// drop it, unless robots overhear. An addressee out of range gets nothing.
-    #[inline(never)]
-    fn address(&mut self, now: SimTime, aboard: &[Spoken<P::Heard>], faults: &Faults, observer: &mut impl Observer) {
-        for spoken in aboard {
-            if let Some(to) = spoken.to
-                && !self.is_in_range(to)
-                && !self.losses.iter().any(|loss| loss.0 == to)
-            {
+    /// Loses what is for robots out of range.
+    fn give_up_far(&mut self, aboard: &[Spoken<P::Heard>]) {
+        for to in aboard.iter().filter_map(|spoken| spoken.to) {
+            if !self.is_in_range(to) && !self.losses.iter().any(|loss| loss.0 == to) {
                 self.losses.push((to, LossCause::BelowSensitivity));
             }
         }
-        let everyone = P::OVERHEARS || aboard.iter().any(|spoken| spoken.to.is_none());
-        if everyone {
-            return self.transmit::<true>(now, aboard, faults, observer);
-        }
+    }
+
+    /// Leaves those listeners for whom something in the frame is: the radios of others drop it. The rest is kept aside.
+    fn narrow(&mut self, aboard: &[Spoken<P::Heard>]) {
         std::mem::swap(&mut self.listeners, &mut self.all_listeners);
         std::mem::swap(&mut self.hindrances, &mut self.all_hindrances);
         self.listeners.clear();
@@ -121,16 +122,14 @@ impl<P: Protocol> Air<P> {
                 self.hindrances.extend(self.all_hindrances.get(place));
             }
         }
-        self.transmit::<true>(now, aboard, faults, observer);
-        std::mem::swap(&mut self.listeners, &mut self.all_listeners);
-        std::mem::swap(&mut self.hindrances, &mut self.all_hindrances);
     }
 
     /// Transmits the messages `aboard` to the present listeners, for whom they share one fate each. `ADDRESSED`: whether one at least
     /// is for one robot.
+    // Inlined where a frame has one message, nearly always, the loops over what is aboard are gone.
     #[allow(clippy::inline_always)]
     #[inline(always)]
-    fn transmit<const ADDRESSED: bool>(
+    pub(super) fn transmit<const ADDRESSED: bool>(
         &mut self,
         now: SimTime,
         aboard: &[Spoken<P::Heard>],
