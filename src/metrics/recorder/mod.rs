@@ -163,13 +163,15 @@ impl Recorder {
     }
 
     /// A copy meant for `receiver` was lost.
-    #[inline]
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     pub fn lost(&mut self, receiver: ActorId, topic: Topic, cause: LossCause, size: MessageSize) {
         self.traffic.lost(receiver, topic, cause, size);
     }
 
     /// A copy arrived at `receiver`, `latency` after its transmission began.
-    #[inline]
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     pub fn delivered(&mut self, receiver: ActorId, topic: Topic, size: MessageSize, latency: Span) {
         self.traffic.received(receiver, topic, size);
         self.latency.record(latency);

@@ -7,7 +7,7 @@ use crate::engine::{ActorId, SimTime};
 use crate::faults::Faults;
 use crate::happenings::{Copy, Observer};
 use crate::protocol::{Address, Frame, MessageSize, Protocol, Reception, Topic};
-use crate::radio::{Fate, LossCause};
+use crate::radio::{Fate, Listener, LossCause, Medium};
 
 /// A message of a frame at one receiver. `ADDRESSED`: whether the frame is not simply for everyone.
 struct AtReceiver<'a, P: Protocol, const ADDRESSED: bool> {
@@ -74,6 +74,27 @@ fn copies_for<P: Protocol, const ADDRESSED: bool>(
         }
         Some(AtReceiver { frame, size, address })
     })
+}
+
+/// What becomes of the next frame of `sender` at each of `listeners`. The same for all protocols, so that it is compiled once and
+/// the medium's arithmetic into it.
+#[inline(never)]
+fn decide(
+    medium: &mut Medium,
+    now: SimTime,
+    sender: ActorId,
+    listeners: &[Listener],
+    arrivals: &mut Vec<Arrival>,
+    losses: &mut Vec<(ActorId, LossCause)>,
+) {
+    medium.transmit(now, sender, listeners.iter().copied(), |receiver, fate| match fate {
+        Fate::Arrives { at, displacement } => arrivals.push(Arrival {
+            receiver,
+            at,
+            displacement,
+        }),
+        Fate::Lost(cause) => losses.push((receiver, cause)),
+    });
 }
 
 impl<P: Protocol> Air<P> {
@@ -150,14 +171,7 @@ impl<P: Protocol> Air<P> {
             ..
         } = self;
         let listeners = if hindrances.is_empty() { listeners } else { reachable };
-        medium.transmit(now, sender, listeners.iter().copied(), |receiver, fate| match fate {
-            Fate::Arrives { at, displacement } => arrivals.push(Arrival {
-                receiver,
-                at,
-                displacement,
-            }),
-            Fate::Lost(cause) => losses.push((receiver, cause)),
-        });
+        decide(medium, now, sender, listeners, arrivals, losses);
         if self.prefetches {
             self.prefetch_fates(P::topic(aboard[0].frame.message.borrow()), observer);
         }
