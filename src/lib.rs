@@ -77,6 +77,8 @@
 //!
 //! The [`TrialRecord`](metrics::TrialRecord) holds what the run left behind: fates, traffic by robot, role and topic,
 //! latencies, connectivity over time, where everybody ended. [`metrics::Summary`] makes figures with intervals of many.
+//! Who wants to know more gives [`Setup::observe`](simulation::Setup::observe) an [`Observer`](simulation::Observer), which is told
+//! what happens as it happens, and has the robots back in the end.
 //!
 //! # What happens in which order
 //!
@@ -95,7 +97,7 @@
 //! # The floors
 //!
 //! [`engine`], [`geometry`], [`quantity`], [`statistics`] and [`text`] know no robots; [`radio`], [`motion`], [`protocol`] and [`faults`] are pure
-//! models that do not know each other; a [`kind`] is a protocol that a scenario can name, and [`kinds`] are those that it can; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
+//! models that do not know each other; [`happenings`] is what observers of a run are told; a [`kind`] is a protocol that a scenario can name, and [`kinds`] are those that it can; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
 //! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
 
 #[cfg(feature = "command")]
@@ -105,6 +107,7 @@ pub mod experiment;
 pub mod export;
 pub mod faults;
 pub mod geometry;
+pub mod happenings;
 pub mod kind;
 pub mod kinds;
 pub mod metrics;

@@ -5,7 +5,7 @@
 
 use std::rc::Rc;
 
-use tokio::task::spawn_local;
+use tokio::task::{JoinHandle, spawn_local};
 
 use super::mailbox::{Desk, Mailbox};
 use super::prefetch::prefetch;
@@ -18,6 +18,7 @@ type Mail<P> = (usize, Box<JobOf<P>>);
 pub struct Actors<P: Process> {
     mailboxes: Vec<Rc<Mailbox<Mail<P>>>>,
     answers: Rc<Desk<Box<JobOf<P>>>>,
+    tasks: Vec<JoinHandle<P>>,
 }
 
 impl<P> Actors<P>
@@ -35,24 +36,26 @@ where
         let answers = Rc::new(Desk::default());
         let spawn = |process| {
             let mailbox = Rc::new(Mailbox::default());
-            spawn_local(live(process, Rc::clone(&mailbox), Rc::clone(&answers)));
-            mailbox
+            let task = spawn_local(live(process, Rc::clone(&mailbox), Rc::clone(&answers)));
+            (mailbox, task)
         };
+        let (mailboxes, tasks) = processes.into_iter().map(spawn).unzip();
         Self {
-            mailboxes: processes.into_iter().map(spawn).collect(),
+            mailboxes,
             answers,
+            tasks,
         }
     }
 }
 
-/// An actor's life: it reads its mail and answers it, for as long as the runtime lets it.
-async fn live<P: Process>(mut process: P, mailbox: Rc<Mailbox<Mail<P>>>, answers: Rc<Desk<Box<JobOf<P>>>>) {
+/// An actor's life: it reads its mail and answers it until there will be no more.
+async fn live<P: Process>(mut process: P, mailbox: Rc<Mailbox<Mail<P>>>, answers: Rc<Desk<Box<JobOf<P>>>>) -> P {
     let _notice = answers.notice_of_panic();
-    loop {
-        let (slot, mut job) = mailbox.next().await;
+    while let Some((slot, mut job)) = mailbox.next(|| answers.is_closed()).await {
         process.handle(job.now, &mut job.input, &mut job.output);
         answers.put(slot, job);
     }
+    process
 }
 
 impl<P: Process> Driver<P> for Actors<P> {
@@ -70,6 +73,18 @@ impl<P: Process> Driver<P> for Actors<P> {
         }
         self.answers.complete().await;
         self.answers.take(jobs);
+    }
+
+    /// # Panics
+    /// If an actor panicked.
+    async fn finish(self) -> Vec<P> {
+        self.answers.close();
+        let mut processes = Vec::with_capacity(self.tasks.len());
+        for (mailbox, task) in self.mailboxes.iter().zip(self.tasks) {
+            mailbox.wake();
+            processes.push(task.await.expect("an actor that has answered does not panic"));
+        }
+        processes
     }
 }
 
@@ -123,6 +138,25 @@ mod tests {
             vec![(0, 5), (1, 109), (2, 207)],
         ];
         assert_eq!(answers(&rounds), expected);
+    }
+
+    #[test]
+    fn actors_come_back_in_order_as_they_are_then_whether_they_ever_woke_or_not() {
+        let run = async {
+            let mut actors = Actors::spawn(vec![Adder(0), Adder(100), Adder(200)]);
+            let job = Job {
+                actor: ActorId(1),
+                now: SimTime::ZERO,
+                input: 5,
+                output: 0,
+            };
+            actors.dispatch(&mut vec![Box::new(job)]).await;
+            let sleepers = Actors::spawn(vec![Adder(7)]);
+            (actors.finish().await, sleepers.finish().await)
+        };
+        let (woken, sleepers) = block_on(run).unwrap();
+        let sums: Vec<u64> = woken.iter().chain(&sleepers).map(|adder| adder.0).collect();
+        assert_eq!(sums, [0, 105, 200, 7]);
     }
 
     #[test]

@@ -33,4 +33,8 @@ impl<P: Process> Driver<P> for Inline<P> {
             self.processes[job.actor.index()].handle(job.now, &mut job.input, &mut job.output);
         }
     }
+
+    async fn finish(self) -> Vec<P> {
+        self.processes
+    }
 }

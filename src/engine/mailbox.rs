@@ -32,10 +32,16 @@ impl<L> Mailbox<L> {
         self.reader.ring();
     }
 
-    /// The next letter.
-    pub async fn next(&self) -> L {
+    /// Wakes the reader without a letter, for it to see that the post has closed.
+    pub fn wake(&self) {
+        self.reader.ring();
+    }
+
+    /// The next letter; `None` once there is none left and the post has `closed`.
+    pub async fn next(&self, closed: impl Fn() -> bool) -> Option<L> {
         poll_fn(|context| match self.letter.take() {
-            Some(letter) => Poll::Ready(letter),
+            Some(letter) => Poll::Ready(Some(letter)),
+            None if closed() => Poll::Ready(None),
             None => self.reader.wait(context),
         })
         .await
@@ -48,6 +54,7 @@ pub struct Desk<A> {
     missing: Cell<usize>,
     driver: Bell,
     panicked: Cell<bool>,
+    closed: Cell<bool>,
 }
 
 impl<A> Default for Desk<A> {
@@ -57,6 +64,7 @@ impl<A> Default for Desk<A> {
             missing: Cell::new(0),
             driver: Bell::default(),
             panicked: Cell::new(false),
+            closed: Cell::new(false),
         }
     }
 }
@@ -97,6 +105,16 @@ impl<A> Desk<A> {
     /// Moves the answers out, in the order of their places.
     pub fn take(&self, into: &mut Vec<A>) {
         into.extend(self.answers.borrow_mut().drain(..).flatten());
+    }
+
+    /// There is no round any more.
+    pub fn close(&self) {
+        self.closed.set(true);
+    }
+
+    /// Whether there is no round any more.
+    pub fn is_closed(&self) -> bool {
+        self.closed.get()
     }
 
     /// What a task that answers here holds, so that nobody waits for it if it panics.

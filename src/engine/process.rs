@@ -68,4 +68,7 @@ pub trait Driver<P: Process> {
 
     /// Handles `jobs`, at most one an actor, and leaves them in the order given.
     fn dispatch(&mut self, jobs: &mut Vec<Box<JobOf<P>>>) -> impl Future<Output = ()>;
+
+    /// Ends, and gives the actors back, in order of their ids.
+    fn finish(self) -> impl Future<Output = Vec<P>>;
 }

@@ -4,6 +4,8 @@ use xxhash_rust::xxh3::Xxh3Default;
 
 use crate::engine::{ActorId, SimTime};
 use crate::faults::{Change, Subject};
+use crate::geometry::Vec2;
+use crate::happenings::{Observer, Sent};
 use crate::protocol::{Input, Output, Wake};
 
 /// Collects events; 128 bits of XXH3 at the end.
@@ -17,7 +19,7 @@ impl Digest {
     }
 
     /// A robot woke and answered.
-    pub fn wake<H, M>(&mut self, now: SimTime, robot: ActorId, input: &Input<H>, output: &Output<M>) {
+    fn wake<H, M>(&mut self, now: SimTime, robot: ActorId, input: &Input<H>, output: &Output<M>) {
         let cause = match input.wake {
             Wake::ControlStep => 0,
             Wake::Timer(id) => 1 + u64::from(id.0),
@@ -43,17 +45,17 @@ impl Digest {
     }
 
     /// A robot sent these payload bytes.
-    pub fn payload(&mut self, bytes: &[u8]) {
+    fn payload(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }
 
-    /// The message of which [`payload`](Self::payload) has just been told is for this robot alone.
-    pub fn addressee(&mut self, to: ActorId) {
+    /// The message whose payload was just told is for this robot alone.
+    fn addressee(&mut self, to: ActorId) {
         self.words(&[u64::from(to.0)]);
     }
 
     /// A fault began or ended.
-    pub fn fault(&mut self, now: SimTime, change: &Change) {
+    fn change(&mut self, now: SimTime, change: &Change) {
         let robot = match change.subject {
             Subject::Robot { robot, .. } => u64::from(robot.0),
             Subject::Links(_) => u64::MAX,
@@ -68,6 +70,28 @@ impl Digest {
 
     fn words<const N: usize>(&mut self, words: &[u64; N]) {
         self.0.update(words.map(u64::to_le_bytes).as_flattened());
+    }
+}
+
+impl Observer for Digest {
+    /// Robots wake and answer in order of time anyway, and nothing else counts.
+    const IN_ORDER: bool = false;
+
+    #[inline]
+    fn woke<H, M>(&mut self, now: SimTime, robot: ActorId, input: &Input<H>, output: &Output<M>) {
+        self.wake(now, robot, input, output);
+    }
+
+    #[inline]
+    fn sent(&mut self, message: &Sent<'_>) {
+        self.payload(message.payload);
+        if let Some(to) = message.to {
+            self.addressee(to);
+        }
+    }
+
+    fn fault(&mut self, now: SimTime, change: &Change, _: &[Vec2]) {
+        self.change(now, change);
     }
 }
 
@@ -88,7 +112,7 @@ mod tests {
 
     use super::*;
     use crate::faults::{Effect, Health};
-    use crate::geometry::{Pose, Vec2};
+    use crate::geometry::Pose;
     use crate::protocol::{Address, Frame, Reception, TimerId};
 
     fn reception(at: u64, sequence: u32) -> Reception<()> {
@@ -142,7 +166,7 @@ mod tests {
                     begins,
                     subject,
                 };
-                digest.fault(SimTime::from_nanos(4), &change);
+                digest.change(SimTime::from_nanos(4), &change);
             }
         };
         let mut digests = vec![

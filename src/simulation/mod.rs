@@ -1,4 +1,4 @@
-//! The event loop of one run: it carries frames, moves robots and calls the recorder, and decides nothing itself.
+//! The event loop of one run: it carries frames, moves robots and tells observers, and decides nothing itself.
 //!
 //! Events at one instant happen in this order: motion tick, faults, robot wakes, sample, observation. All robots that wake at
 //! one instant see the world as it was before any of them acted; their answers are then applied in the order of waking.
@@ -15,5 +15,6 @@ mod run;
 mod setup;
 mod wakes;
 
+pub use crate::happenings::{Copy, Inbox, Observer, Sent};
 pub use error::RunError;
-pub use setup::{DriverKind, Setup};
+pub use setup::{DriverKind, Finished, Setup};

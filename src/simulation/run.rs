@@ -6,14 +6,13 @@ use tokio_util::sync::CancellationToken;
 
 use super::air::Air;
 use super::clock::{Alarms, ControlSteps};
-use super::digest::Digest;
 use super::error::RunError;
 use crate::engine::{
     ActorId, Driver, EventKey, EventQueue, Job, KeyedStreams, Purpose, SimTime, Span, Streams, outgrows_cache,
 };
 use crate::faults::{Change, Faults, Health, Subject};
-use crate::geometry::Vec2;
-use crate::metrics::{Progress, Recorder, RunEnd, TrialRecord};
+use crate::geometry::{Pose, Vec2};
+use crate::happenings::Observer;
 use crate::motion::World;
 use crate::protocol::{Input, Output, Protocol, Robot};
 
@@ -63,12 +62,10 @@ pub struct Rhythm {
     pub time_limit: SimTime,
     /// Whether arrivals wake robots.
     pub wake_on_reception: bool,
-    /// Whether there is a mission whose completion ends the run.
-    pub has_mission: bool,
 }
 
 /// A run: the world, the air and the robots' alarms, around the queue of events.
-pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
+pub struct Run<P: Protocol, D: Driver<Robot<P>>, O: Observer> {
     pub(super) rhythm: Rhythm,
     pub(super) queue: EventQueue<Event>,
     pub(super) driver: D,
@@ -76,8 +73,7 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     pub(super) air: Air<P>,
     pub(super) faults: Faults,
     changes: Vec<Change>,
-    pub(super) recorder: Recorder,
-    pub(super) digest: Digest,
+    pub(super) observer: O,
     pub(super) control_steps: ControlSteps,
     pub(super) alarms: Vec<Alarms>,
     /// Each robot's control steps and other wakes so far: apart, so that no timer shifts the draws of a control step.
@@ -96,7 +92,7 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>> {
     steps: u64,
 }
 
-impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
+impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
     /// A run in which robot i takes its first control step at `first_steps[i]`, less than a period from the start.
     #[allow(clippy::too_many_arguments)] // The parts of a run, each once.
     pub fn new(
@@ -105,7 +101,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         world: World,
         air: Air<P>,
         faults: Faults,
-        recorder: Recorder,
+        observer: O,
         streams: Streams,
         first_steps: &[SimTime],
     ) -> Self {
@@ -114,7 +110,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         if rhythm.sample_interval > Span::ZERO {
             queue.schedule(Event::Sample, SimTime::ZERO);
         }
-        if rhythm.has_mission {
+        if observer.judges() {
             queue.schedule(Event::Observe, SimTime::ZERO);
         }
         if faults.next() < SimTime::NEVER {
@@ -128,8 +124,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             air,
             faults,
             changes: Vec::new(),
-            recorder,
-            digest: Digest::new(),
+            observer,
             control_steps: ControlSteps::new(first_steps, rhythm.control_period),
             alarms: first_steps.iter().map(|_| Alarms::default()).collect(),
             wakes: vec![[0; 2]; first_steps.len()],
@@ -145,8 +140,8 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         }
     }
 
-    /// Runs to the end and returns what it leaves behind.
-    pub async fn until_end(mut self, trial: u32, seed: u64, stop: &CancellationToken) -> Result<TrialRecord, RunError> {
+    /// Runs to the end and returns what is left.
+    pub async fn until_end(mut self, stop: &CancellationToken) -> Result<Ended<P, O>, RunError> {
         let mut end = self.rhythm.time_limit;
         loop {
             let (event, now) = self.next_event();
@@ -163,19 +158,18 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                         return Err(RunError::Interrupted);
                     }
                     self.world.advance();
-                    self.recorder.tick(&self.world);
+                    self.observer.tick(&self.world);
                     self.queue.schedule(event, now + self.world.tick());
                 }
                 Event::Fault => self.suffer(now),
                 Event::Sample => {
                     self.locate(now);
-                    self.recorder.sample(now, &self.positions);
+                    self.observer.sample(now, &self.positions);
                     self.queue.schedule(event, now + self.rhythm.sample_interval);
                 }
                 Event::Observe => {
                     self.locate(now);
-                    let progress = self.recorder.observe(self.steps, &self.positions);
-                    if matches!(progress, Progress::Complete { .. }) {
+                    if self.observer.judge(self.steps, &self.positions) {
                         end = now;
                         break;
                     }
@@ -184,7 +178,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                 }
             }
         }
-        Ok(self.finish(trial, seed, end))
+        Ok(self.finish(end).await)
     }
 
     /// What happens next, and when.
@@ -203,8 +197,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         let mut changes = std::mem::take(&mut self.changes);
         self.faults.advance(now, &self.positions, &mut changes);
         for change in changes.drain(..) {
-            self.digest.fault(now, &change);
-            self.recorder.fault(now, &change, &self.positions);
+            self.observer.fault(now, &change, &self.positions);
             if let Subject::Robot { robot, health, .. } = change.subject {
                 self.ail(now, robot, health);
             }
@@ -215,7 +208,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
 
     /// From `now` on `robot` can do what its `health` allows.
     fn ail(&mut self, now: SimTime, robot: ActorId, health: Health) {
-        self.air.set_hearing(now, robot, health.hears, &mut self.recorder);
+        self.air.set_hearing(now, robot, health.hears, &mut self.observer);
         let alarms = &mut self.alarms[robot.index()];
         if self.rhythm.wake_on_reception {
             alarms.set_arrival(self.air.next_arrival(robot));
@@ -249,22 +242,40 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         positions.extend((0..alarms.len() as u32).map(|robot| world.position(ActorId(robot), now)));
     }
 
-    fn finish(mut self, trial: u32, seed: u64, end: SimTime) -> TrialRecord {
-        self.air.settle(end, &mut self.recorder);
+    async fn finish(mut self, end: SimTime) -> Ended<P, O> {
+        self.air.settle(end, &mut self.observer);
+        self.observer.end(end);
         let world = &self.world;
         let poses = (0..self.alarms.len() as u32)
             .map(|robot| world.pose(ActorId(robot), end))
             .collect();
-        self.recorder.finish(RunEnd {
-            trial,
-            seed,
+        Ended {
+            at: end,
             // The first control step is at time zero, so one more than the periods that fit.
             steps: end.as_nanos() / self.rhythm.control_period.as_nanos() + 1,
-            simulated: end,
             events: self.events,
-            digest: self.digest.finish(),
             robot_steps: self.control_steps.due_by(end),
             poses,
-        })
+            robots: self.driver.finish().await.into_iter().map(|robot| robot.0).collect(),
+            observer: self.observer,
+        }
     }
+}
+
+/// What is left of a run.
+pub struct Ended<P, O> {
+    /// When it ended.
+    pub at: SimTime,
+    /// Control steps simulated.
+    pub steps: u64,
+    /// Events handled.
+    pub events: u64,
+    /// Control steps of each robot that were due.
+    pub robot_steps: Vec<u64>,
+    /// Where every robot is.
+    pub poses: Vec<Pose>,
+    /// The robots.
+    pub robots: Vec<P>,
+    /// Whoever watched.
+    pub observer: O,
 }

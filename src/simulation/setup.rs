@@ -5,12 +5,15 @@ use std::str::FromStr;
 use tokio_util::sync::CancellationToken;
 
 use super::air::Air;
+use super::digest::Digest;
 use super::error::RunError;
-use super::run::{Rhythm, Run};
+use super::run::{Ended, Rhythm, Run};
 use crate::engine::{ActorId, Actors, Driver, Inline, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
 use crate::geometry::Pose;
-use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, TrialRecord};
+use crate::happenings::Observer;
+use crate::metrics::detection::StatusTrace;
+use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RunEnd, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm as Repeated, WakeConfig};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
@@ -39,6 +42,9 @@ impl FromStr for DriverKind {
     }
 }
 
+/// The observers of every run: what makes its record.
+type Books = (Recorder, Digest);
+
 /// The world that robots are put into.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
@@ -66,7 +72,7 @@ pub struct Setup {
     pub detector: DetectorConfig,
     /// The longest pause that a robot makes between two statuses; zero if it sends none.
     pub status_interval: Span,
-    /// A robot whose statuses are to be followed one by one, into [`TrialRecord::trace`].
+    /// A robot whose statuses are to be followed one by one, into [`TrialRecord::trace`]; the run is then driven inline.
     pub trace: Option<ActorId>,
     /// What counts as completion, if anything does.
     pub mission: Option<Mission>,
@@ -95,7 +101,7 @@ impl Setup {
     /// Puts `robots` at `poses` and runs them to the end, or until `stop` is cancelled.
     ///
     /// # Errors
-    /// If a message cannot cross the air, or the run is interrupted.
+    /// If a message cannot cross the air, a robot measures what is no number, or the run is interrupted.
     ///
     /// # Panics
     /// If there are not as many poses as robots, or a config has problems: a scenario is checked before it is run.
@@ -106,6 +112,26 @@ impl Setup {
         driver: DriverKind,
         stop: &CancellationToken,
     ) -> Result<TrialRecord, RunError> {
+        let finished = self.observe(poses, robots, driver, stop, ());
+        finished.map(|finished| finished.record)
+    }
+
+    /// Runs robots as [`run`](Self::run) does while `observer` watches: an [`Observer`] or a mutable reference to one. The run is the same, its
+    /// record and digest too, whoever watches, but for one that [ends](Observer::judge) it.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    ///
+    /// # Panics
+    /// As [`run`](Self::run).
+    pub fn observe<P: Protocol, O: Observer>(
+        &self,
+        poses: Vec<Pose>,
+        robots: Vec<P>,
+        driver: DriverKind,
+        stop: &CancellationToken,
+        observer: O,
+    ) -> Result<Finished<P, O>, RunError> {
         assert_eq!(poses.len(), robots.len(), "every robot needs a pose");
         let swarm = robots.len();
         let started = |(mut robot, number): (P, u32)| {
@@ -116,21 +142,48 @@ impl Setup {
             Robot(robot)
         };
         let robots = robots.into_iter().zip(0..).map(started).collect();
+        let recorder = Recorder::new(self.layout::<P>(swarm), &self.metrics);
+        let books = (recorder, Digest::new());
         let run = async {
-            match driver {
-                DriverKind::Actors => self.run_with(poses, Actors::spawn(robots), stop).await,
-                DriverKind::Inline => self.run_with(poses, Inline::new(robots), stop).await,
+            match (self.trace.zip(P::STATUS), driver) {
+                // Traced or not is decided here, and not at every copy.
+                (Some((robot, topic)), _) => {
+                    let observers = (books, (StatusTrace::new(robot, topic), observer));
+                    let ended = self.run_with(poses, Inline::new(robots), observers, stop).await?;
+                    let Finished {
+                        mut record,
+                        robots,
+                        observer: (trace, observer),
+                    } = self.finished(ended);
+                    record.trace = Some(trace);
+                    Ok(Finished {
+                        record,
+                        robots,
+                        observer,
+                    })
+                }
+                (None, DriverKind::Actors) => {
+                    let robots = Actors::spawn(robots);
+                    let ended = self.run_with(poses, robots, (books, observer), stop).await?;
+                    Ok(self.finished(ended))
+                }
+                (None, DriverKind::Inline) => {
+                    let robots = Inline::new(robots);
+                    let ended = self.run_with(poses, robots, (books, observer), stop).await?;
+                    Ok(self.finished(ended))
+                }
             }
         };
         block_on(run).map_err(RunError::Runtime)?
     }
 
-    async fn run_with<P: Protocol, D: Driver<Robot<P>>>(
+    async fn run_with<P: Protocol, D: Driver<Robot<P>>, O: Observer>(
         &self,
         poses: Vec<Pose>,
         driver: D,
+        observer: O,
         stop: &CancellationToken,
-    ) -> Result<TrialRecord, RunError> {
+    ) -> Result<Ended<P, O>, RunError> {
         let streams = self.streams();
         let robots = poses.len();
         let first_steps = self.first_steps(robots, streams);
@@ -142,10 +195,29 @@ impl Setup {
             self.piggyback,
             rhythm.wake_on_reception,
         );
-        let recorder = Recorder::new(self.layout::<P>(robots), &self.metrics);
         let faults = Faults::new(&self.faults, P::ROLES, robots, rhythm.control_period, streams);
-        let run = Run::new(rhythm, driver, world, air, faults, recorder, streams, &first_steps);
-        run.until_end(self.trial, self.seed, stop).await
+        let run = Run::new(rhythm, driver, world, air, faults, observer, streams, &first_steps);
+        run.until_end(stop).await
+    }
+
+    /// What users get of a run that ended.
+    fn finished<P, O>(&self, ended: Ended<P, (Books, O)>) -> Finished<P, O> {
+        let ((recorder, digest), observer) = ended.observer;
+        let record = recorder.finish(RunEnd {
+            trial: self.trial,
+            seed: self.seed,
+            steps: ended.steps,
+            simulated: ended.at,
+            events: ended.events,
+            digest: digest.finish(),
+            robot_steps: ended.robot_steps,
+            poses: ended.poses,
+        });
+        Finished {
+            record,
+            robots: ended.robots,
+            observer,
+        }
     }
 
     fn rhythm(&self) -> Rhythm {
@@ -154,7 +226,6 @@ impl Setup {
             sample_interval: Span::from_secs(self.metrics.sample_interval.get()),
             time_limit: SimTime::ZERO + self.time_limit,
             wake_on_reception: self.control.wake == WakeConfig::OnReception,
-            has_mission: self.mission.is_some() || self.rumors > 0,
         }
     }
 
@@ -179,7 +250,7 @@ impl Setup {
             // A status may be that much older than the silence that it began, when its latency is long.
             status_memory: self.detector.longest_silence(circumstances) * 2,
             patience: self.detector.usual_silence(circumstances),
-            trace: self.trace,
+            status: P::STATUS,
         }
     }
 
@@ -189,4 +260,15 @@ impl Setup {
         let first = |robot| SimTime::ZERO + phases.span(ActorId(robot), Repeated::ControlStep, self.control.period());
         (0..robots as u32).map(first).collect()
     }
+}
+
+/// A run that reached its end.
+#[derive(Debug)]
+pub struct Finished<P, O> {
+    /// What it left behind.
+    pub record: TrialRecord,
+    /// The robots as they are now, in order of ids.
+    pub robots: Vec<P>,
+    /// Whoever watched.
+    pub observer: O,
 }

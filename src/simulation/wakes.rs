@@ -12,7 +12,7 @@ use super::air::Surroundings;
 use super::error::RunError;
 use super::run::{Event, JobFor, Run};
 use crate::engine::{ActorId, Driver, Job, SimTime, Span, prefetch};
-use crate::metrics::detection::Inbox;
+use crate::happenings::{Inbox, Observer};
 use crate::protocol::{Input, Note, Output, Protocol, Robot, Wake};
 
 /// Control steps taken in one round, at most: their inboxes should still be in the cache when their answers are read.
@@ -25,7 +25,7 @@ const CONTENTS_AHEAD: usize = 4;
 /// From an instant to the next.
 const INSTANT: Span = Span::from_nanos(1);
 
-impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
+impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
     /// Wakes every robot that has an alarm at `now`, once. One that has another at that instant is in the next batch.
     pub(super) async fn ring_alarms(&mut self, now: SimTime) -> Result<(), RunError> {
         while let Some((event @ Event::Alarm(robot), due)) = self.queue.peek()
@@ -92,6 +92,9 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
     /// The instant before which nothing that happens from `now` on reaches a robot, but its own control steps. Within a period
     /// each robot has one.
     fn horizon(&self, now: SimTime) -> SimTime {
+        if O::IN_ORDER {
+            return now + INSTANT;
+        }
         let next_event = self.queue.peek().map_or(SimTime::NEVER, |(_, at)| at);
         let end = self.rhythm.time_limit + INSTANT;
         let heard = now + self.air.lookahead().min(self.rhythm.control_period);
@@ -107,12 +110,12 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         prefetch(&self.wakes[robot.index()]);
         self.world.prefetch_row(robot);
         self.air.prefetch_row(robot);
-        self.recorder.prefetch_row(robot);
+        self.observer.prefetch_row(robot);
         self.driver.prefetch_row(robot);
 
         let robot = self.control_steps.ahead(CONTENTS_AHEAD);
         self.air.prefetch_contents(robot, &self.world);
-        self.recorder.prefetch_contents(robot);
+        self.observer.prefetch_contents(robot);
         self.driver.prefetch_contents(robot);
     }
 
@@ -158,7 +161,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
         if P::SENSES_PROXIMITY && wake == Wake::ControlStep {
             self.world.proximity(robot, now, &mut input.proximity);
         }
-        self.air.deliver(now, robot, &mut input.inbox, &mut self.recorder);
+        self.air.deliver(now, robot, &mut input.inbox, &mut self.observer);
         if self.rhythm.wake_on_reception {
             self.alarms[index].set_arrival(self.air.next_arrival(robot));
         }
@@ -175,7 +178,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
             output,
         } = job;
         let (robot, now) = (*robot, *now);
-        self.digest.wake(now, robot, input, output);
+        self.observer.woke(now, robot, input, output);
         for note in output.notes.drain(..) {
             if let Note::Value { name, value } = note
                 && !value.is_finite()
@@ -188,12 +191,11 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                     value,
                 });
             }
-            self.recorder.note(robot, &note);
             let inbox = Inbox {
                 read: &input.inbox,
                 waiting: self.air.waiting(robot),
             };
-            self.recorder.belief(now, robot, &note, &inbox);
+            self.observer.noted(now, robot, &note, &inbox);
             if let Note::Role(role) = note {
                 self.faults.enter(now, robot, role.0);
                 self.plan_faults();
@@ -207,8 +209,7 @@ impl<P: Protocol, D: Driver<Robot<P>>> Run<P, D> {
                 world: &self.world,
                 faults: &self.faults,
             };
-            self.air
-                .say(now, robot, output, place, &mut self.recorder, &mut self.digest)?;
+            self.air.say(now, robot, output, place, &mut self.observer)?;
         }
         let rang = input.wake != Wake::ControlStep;
         if rang || self.rhythm.wake_on_reception || !output.timers.is_empty() {

@@ -9,6 +9,7 @@ mod exchangeable;
 mod faults;
 mod gossip;
 mod limits;
+mod observers;
 mod phases;
 mod radio;
 mod scaling;

@@ -187,6 +187,23 @@ fn a_message_to_a_robot_out_of_range_is_lost_for_that_and_seen_to_be() {
     assert_eq!((heard, fates(&record)), (vec![(1, Address::Another, 7)], [2, 1, 1]));
 }
 
+/// Nobody hears either message: the two runs differ in whom it is for, and in nothing else.
+#[test]
+fn whom_a_message_is_for_is_in_the_digest() {
+    let digest = |script| hear::<false>(&setup(), 5, script).0.digest;
+    let to_3 = digest(|me, output| {
+        if me == ActorId(0) {
+            output.send(ActorId(3), word(7));
+        }
+    });
+    let to_4 = digest(|me, output| {
+        if me == ActorId(0) {
+            output.send(ActorId(4), word(7));
+        }
+    });
+    assert_ne!(to_3, to_4);
+}
+
 #[test]
 fn a_message_to_oneself_or_to_no_robot_ends_the_run_with_a_word_about_it() {
     let complaint = |script: fn(ActorId, &mut Output<Word>)| {

@@ -1,19 +1,11 @@
 //! What became of the statuses of late: kept so that a suspicion can be traced to them, and no longer.
 
 use crate::engine::{ActorId, SimTime, Span, prefetch, prefetch_end};
+use crate::happenings::Inbox;
 use crate::protocol::Reception;
 use crate::radio::LossCause;
 
 use super::record::Missed;
-
-/// Frames at an observer, of all topics.
-#[derive(Debug)]
-pub struct Inbox<'a, M> {
-    /// Those that it reads now.
-    pub read: &'a [Reception<M>],
-    /// Those that are on their way to it.
-    pub waiting: &'a [Reception<M>],
-}
 
 /// Statuses sent and copies of them lost, for the last while. What is delivered leaves no trace here: that is by far the
 /// most, and a status that was sent, not lost and is not under way was either read or out of range.
@@ -273,6 +265,20 @@ mod tests {
             "20 and 30: 0 is older, 60 is sent only now"
         );
         assert_eq!((missed.under_way, missed.out_of_range), (1, 1), "40, and then 50");
+    }
+
+    /// Statuses for one robot alone: the observer misses those for itself, and those for all.
+    #[test]
+    fn a_status_for_another_is_missed_by_nobody_else() {
+        let mut log = StatusLog::new(3, Span::from_secs(100.0));
+        let addressees = [None, Some(ActorId(2)), Some(OBSERVER), Some(ActorId(2)), None];
+        for (second, to) in (0..).zip(addressees) {
+            log.sent(at(f64::from(second)), SUBJECT, second, to);
+        }
+        let none = [] as [Reception<()>; 0];
+        let out_of_range = |observer| log.missed(at(9.0), [observer, SUBJECT], 0, &none).out_of_range;
+        assert_eq!(out_of_range(OBSERVER), 2, "2 for itself, 4 for all");
+        assert_eq!(out_of_range(ActorId(2)), 3, "1 and 3 for itself, 4 for all");
     }
 
     #[test]

@@ -34,7 +34,6 @@ mod record;
 mod score;
 mod trace;
 
-pub use log::Inbox;
 pub use record::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion, Verdict};
 pub use trace::{Copy, CopyFate, Status, StatusTrace};
 

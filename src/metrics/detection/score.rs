@@ -5,11 +5,12 @@ use std::num::NonZeroU32;
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::Health;
 use crate::geometry::at_most;
+use crate::happenings::Inbox;
 use crate::motion::World;
 use crate::protocol::{Evidence, Note};
 use crate::radio::LossCause;
 
-use super::log::{Inbox, StatusLog};
+use super::log::StatusLog;
 use super::range::{Crossing, Ranges};
 use super::record::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion, Verdict};
 

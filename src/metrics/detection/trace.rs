@@ -1,6 +1,9 @@
 //! One robot's statuses followed one by one: who asks why it was suspected runs the trial again with this.
 
 use crate::engine::{ActorId, SimTime};
+use crate::happenings::{self, Observer, Sent};
+use crate::motion::World;
+use crate::protocol::Topic;
 use crate::radio::LossCause;
 
 /// Every status of one robot and what became of it.
@@ -8,6 +11,8 @@ use crate::radio::LossCause;
 pub struct StatusTrace {
     /// The robot.
     pub robot: ActorId,
+    /// The topic of statuses.
+    topic: Topic,
     /// Its statuses, in the order in which it sent them.
     pub statuses: Vec<Status>,
 }
@@ -56,33 +61,24 @@ impl Status {
 }
 
 impl StatusTrace {
-    /// Nothing sent yet.
-    pub(in crate::metrics) fn new(robot: ActorId) -> Self {
+    /// Nothing sent yet by `robot`, whose statuses are its messages on `topic`.
+    #[must_use]
+    pub fn new(robot: ActorId, topic: Topic) -> Self {
         Self {
             robot,
+            topic,
             statuses: Vec::new(),
         }
     }
 
-    /// The robot sends a status.
-    pub(in crate::metrics) fn sent(&mut self, now: SimTime, sequence: u32) {
-        self.statuses.push(Status {
-            sequence,
-            sent_at: now,
-            distances: Vec::new(),
-            copies: Vec::new(),
-        });
+    #[inline]
+    fn follows(&self, copy: &happenings::Copy) -> bool {
+        copy.sender == self.robot && copy.topic == self.topic
     }
 
-    /// How far everybody is at `now`, when the robot may just have sent a status.
-    pub fn distances(&mut self, now: SimTime, distances: Vec<f32>) {
-        if let Some(status) = self.statuses.last_mut().filter(|status| status.sent_at == now) {
-            status.distances = distances;
-        }
-    }
-
-    /// A copy meets its fate; one that was to arrive may still be lost at its receiver.
-    pub fn fate(&mut self, sequence: u32, receiver: ActorId, fate: CopyFate) {
+    // What it does is kept apart from what it asks, which every copy of every frame runs through. So also below.
+    #[cold]
+    fn fate(&mut self, sequence: u32, receiver: ActorId, fate: CopyFate) {
         let Some(status) = self.status(sequence) else { return };
         match status.copies.iter_mut().find(|copy| copy.receiver == receiver) {
             Some(copy) => copy.fate = fate,
@@ -98,11 +94,11 @@ impl StatusTrace {
         }
     }
 
-    /// `receiver` reads its copy.
-    pub fn read(&mut self, now: SimTime, sequence: u32, receiver: ActorId) {
+    #[cold]
+    fn read(&mut self, sequence: u32, receiver: ActorId, read: Option<SimTime>) {
         let Some(status) = self.status(sequence) else { return };
         if let Some(copy) = status.copies.iter_mut().find(|copy| copy.receiver == receiver) {
-            copy.read = Some(now);
+            copy.read = read;
         }
     }
 
@@ -111,5 +107,56 @@ impl StatusTrace {
             .iter_mut()
             .rev()
             .find(|status| status.sequence == sequence)
+    }
+}
+
+impl Observer for StatusTrace {
+    /// What becomes of a copy is told in its order, and copies are independent of each other.
+    const IN_ORDER: bool = false;
+
+    fn sent(&mut self, message: &Sent<'_>) {
+        if message.sender == self.robot && message.topic == self.topic {
+            self.statuses.push(Status {
+                sequence: message.sequence,
+                sent_at: message.at,
+                distances: Vec::new(),
+                copies: Vec::new(),
+            });
+        }
+    }
+
+    fn spoke(&mut self, now: SimTime, robot: ActorId, world: &World) {
+        if robot != self.robot {
+            return;
+        }
+        if let Some(status) = self.statuses.last_mut().filter(|status| status.sent_at == now) {
+            let here = world.position(robot, now);
+            let distance = |other| (world.position(ActorId(other), now) - here).norm() as f32;
+            status.distances = (0..world.positions().len() as u32).map(distance).collect();
+        }
+    }
+
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn arrives(&mut self, copy: &happenings::Copy, at: SimTime) {
+        if self.follows(copy) {
+            self.fate(copy.sequence, copy.receiver, CopyFate::Arrives(at));
+        }
+    }
+
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn lost(&mut self, copy: &happenings::Copy, cause: LossCause, _: SimTime) {
+        if self.follows(copy) {
+            self.fate(copy.sequence, copy.receiver, CopyFate::Lost(cause));
+        }
+    }
+
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn delivered(&mut self, copy: &happenings::Copy, _: SimTime, read: Option<SimTime>) {
+        if self.follows(copy) {
+            self.read(copy.sequence, copy.receiver, read);
+        }
     }
 }

@@ -1,8 +1,11 @@
 //! The recorder: told of everything that happens in a run, it leaves a [`TrialRecord`].
 
+mod observer;
+
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::{Change, Subject};
 use crate::geometry::{Pose, Vec2};
+use crate::happenings::Inbox;
 use crate::motion::World;
 use crate::protocol::{CompletionConfig, MessageSize, Note, Topic};
 use crate::radio::LossCause;
@@ -10,7 +13,7 @@ use crate::radio::LossCause;
 use super::completion::{Hearing, Judge, Progress};
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
-use super::detection::{CopyFate, Inbox, Scorer, StatusTrace, Watching};
+use super::detection::{Scorer, Watching};
 use super::faults::Failures;
 use super::healing::Healing;
 use super::latency::LatencyHistogram;
@@ -47,8 +50,8 @@ pub struct Layout {
     pub status_memory: Span,
     /// How long the robots' failure detector waits for a status before it suspects.
     pub patience: Span,
-    /// The robot whose statuses are followed one by one, if any.
-    pub trace: Option<ActorId>,
+    /// The topic of the statuses that the robots' failure detector listens to, if they run one.
+    pub status: Option<Topic>,
 }
 
 /// What only the hub knows when a run is over.
@@ -87,7 +90,7 @@ pub struct Recorder {
     failures: Failures,
     healing: Healing,
     detection: Scorer,
-    trace: Option<StatusTrace>,
+    status: Option<Topic>,
     judge: Option<Judge>,
     spread: Spread,
     notes: Notes,
@@ -129,7 +132,7 @@ impl Recorder {
                     range: layout.radio_range,
                 },
             ),
-            trace: layout.trace.map(StatusTrace::new),
+            status: layout.status,
             judge: layout
                 .mission
                 .map(|mission| Judge::new(mission, completion, control_period)),
@@ -141,24 +144,6 @@ impl Recorder {
             trajectories: Vec::new(),
             last_graph: None,
         }
-    }
-
-    /// Asks for what the books have about `robot`, which is to wake soon.
-    pub fn prefetch_row(&self, robot: ActorId) {
-        self.traffic.prefetch_row(robot);
-        self.detection.prefetch_row(robot);
-    }
-
-    /// Asks for where its next entries go, a while after its [row](Self::prefetch_row).
-    pub fn prefetch_contents(&self, robot: ActorId) {
-        self.traffic.prefetch_contents(robot);
-        self.detection.prefetch_contents(robot);
-    }
-
-    /// Asks for where [`lost`](Self::lost) will count.
-    #[inline]
-    pub fn prefetch_lost(&self, receiver: ActorId, topic: Topic, cause: LossCause) {
-        self.traffic.prefetch_lost(receiver, topic, cause);
     }
 
     /// `sender` transmitted a frame, however many robots hear it.
@@ -178,13 +163,15 @@ impl Recorder {
     }
 
     /// A copy meant for `receiver` was lost.
-    #[inline]
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     pub fn lost(&mut self, receiver: ActorId, topic: Topic, cause: LossCause, size: MessageSize) {
         self.traffic.lost(receiver, topic, cause, size);
     }
 
     /// A copy arrived at `receiver`, `latency` after its transmission began.
-    #[inline]
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     pub fn delivered(&mut self, receiver: ActorId, topic: Topic, size: MessageSize, latency: Span) {
         self.traffic.received(receiver, topic, size);
         self.latency.record(latency);
@@ -232,18 +219,12 @@ impl Recorder {
     /// `sender` sent a status, its frame number `sequence`: to one robot alone, or to all in range.
     pub fn status_sent(&mut self, now: SimTime, sender: ActorId, sequence: u32, to: Option<ActorId>) {
         self.detection.sent(now, sender, sequence, to);
-        if let Some(trace) = self.trace_of(sender) {
-            trace.sent(now, sequence);
-        }
     }
 
     /// The copy of a status that was meant for `receiver` was lost, which [`lost`](Self::lost) is told as well.
     #[inline]
     pub fn status_lost(&mut self, receiver: ActorId, sender: ActorId, sequence: u32, cause: LossCause) {
         self.detection.lost(receiver, sender, sequence, cause);
-        if let Some(trace) = self.trace_of(sender) {
-            trace.fate(sequence, receiver, CopyFate::Lost(cause));
-        }
     }
 
     /// `observer` may have reported a belief about another robot, with these frames at hand.
@@ -257,18 +238,6 @@ impl Recorder {
     /// Robots go on to where `world` says, at each of its ticks.
     pub fn tick(&mut self, world: &World) {
         self.detection.tick(world);
-    }
-
-    /// Where the statuses of `sender` are followed one by one, if they are.
-    #[inline]
-    pub fn trace_of(&mut self, sender: ActorId) -> Option<&mut StatusTrace> {
-        self.trace.as_mut().filter(|trace| trace.robot == sender)
-    }
-
-    /// Whether any robot's statuses are followed.
-    #[must_use]
-    pub fn is_tracing(&self) -> bool {
-        self.trace.is_some()
     }
 
     /// Samples the graph of the live robots, the traffic since the sample before, and where everyone is, `positions` in order of ids.
@@ -363,7 +332,7 @@ impl Recorder {
             traffic,
             latency: self.latency,
             detection: self.detection.finish(end.simulated),
-            trace: self.trace,
+            trace: None,
             faults: self.failures.into_episodes(),
             healing: self.healing.into_episodes(),
             spread: self.spread.into_records(),

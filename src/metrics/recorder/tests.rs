@@ -17,7 +17,7 @@ fn recorder(mission: Option<Mission>) -> Recorder {
         completion: CompletionConfig::default(),
         status_memory: Span::from_secs(8.0),
         patience: Span::from_secs(4.0),
-        trace: None,
+        status: None,
     };
     Recorder::new(layout, &MetricsConfig::default())
 }

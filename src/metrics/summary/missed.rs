@@ -190,7 +190,7 @@ mod tests {
             completion: crate::protocol::CompletionConfig::default(),
             status_memory: Span::from_secs(8.0),
             patience: Span::from_secs(4.0),
-            trace: None,
+            status: None,
         };
         let at = |place: usize| SimTime::from_secs(10.0 * place as f64);
         let record = Recorder::new(layout, &MetricsConfig::default()).finish(RunEnd {

@@ -34,7 +34,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
         completion: crate::protocol::CompletionConfig::default(),
         status_memory: Span::from_secs(8.0),
         patience: Span::from_secs(4.0),
-        trace: None,
+        status: None,
     };
     let mut recorder = Recorder::new(layout, &MetricsConfig::default());
     for frame in 0..10 {

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use desim::experiment::{Ending, FinishedTrial, Parts, PartsError};
-use desim::export::{Contents, Folder, FolderError, Manifest, sealed};
+use desim::export::{Contents, Folder, FolderError, Manifest, Results, sealed};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 use tempfile::tempdir;
@@ -93,6 +93,22 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
         "trials.parquet",
     ];
     assert_eq!(names, expected);
+}
+
+/// The first made-up trial notes nothing, the second does.
+#[test]
+fn a_table_of_notes_is_there_only_where_robots_note_something_and_goes_with_the_rest() {
+    let dir = tempdir().unwrap();
+    let notes = dir.path().join("notes.parquet");
+    let stop = CancellationToken::new();
+    for (trials, there) in [(2, true), (1, false)] {
+        let folder = Folder::new(dir.path().to_owned());
+        folder.clear().unwrap();
+        assert!(!notes.exists(), "it is desim's own, and goes with the rest");
+        run(dir.path(), &scenario(trials), 1, &stop, |trial| Ok(record(trial))).unwrap();
+        assert_eq!(notes.exists(), there);
+        assert_eq!(Results::open(dir.path()).unwrap().records.len() as u32, trials);
+    }
 }
 
 #[test]

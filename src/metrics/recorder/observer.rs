@@ -1,0 +1,88 @@
+//! The recorder as an observer of a run.
+
+use crate::engine::{ActorId, SimTime};
+use crate::faults::Change;
+use crate::geometry::Vec2;
+use crate::happenings::{Copy, Inbox, Observer, Sent};
+use crate::metrics::completion::Progress;
+use crate::motion::World;
+use crate::protocol::{Note, Topic};
+use crate::radio::LossCause;
+
+use super::Recorder;
+
+impl Observer for Recorder {
+    /// What robots read is counted where they are looked up anyway, whatever others say meanwhile.
+    const IN_ORDER: bool = false;
+
+    fn judges(&self) -> bool {
+        self.judge.is_some() || self.everyone_knows.is_some()
+    }
+
+    fn noted<H>(&mut self, now: SimTime, robot: ActorId, note: &Note, inbox: &Inbox<'_, H>) {
+        self.note(robot, note);
+        self.belief(now, robot, note, inbox);
+    }
+
+    #[inline]
+    fn sent(&mut self, message: &Sent<'_>) {
+        self.transmitted(message.sender, message.topic, message.size);
+        if self.status == Some(message.topic) {
+            let to = message.to.filter(|_| !message.overheard);
+            self.status_sent(message.at, message.sender, message.sequence, to);
+        }
+        self.offered(message.topic, message.copies);
+    }
+
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn lost(&mut self, copy: &Copy, cause: LossCause, _: SimTime) {
+        self.lost(copy.receiver, copy.topic, cause, copy.size);
+        if self.status == Some(copy.topic) {
+            self.status_lost(copy.receiver, copy.sender, copy.sequence, cause);
+        }
+    }
+
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn delivered(&mut self, copy: &Copy, at: SimTime, _: Option<SimTime>) {
+        self.delivered(copy.receiver, copy.topic, copy.size, copy.latency(at));
+    }
+
+    fn in_flight(&mut self, copy: &Copy, at: SimTime) {
+        self.in_flight(copy.topic, copy.latency(at));
+    }
+
+    fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {
+        self.fault(now, change, positions);
+    }
+
+    fn tick(&mut self, world: &World) {
+        self.tick(world);
+    }
+
+    fn sample(&mut self, now: SimTime, positions: &[Vec2]) {
+        self.sample(now, positions);
+    }
+
+    fn judge(&mut self, step: u64, positions: &[Vec2]) -> bool {
+        matches!(self.observe(step, positions), Progress::Complete { .. })
+    }
+
+    #[inline]
+    fn prefetch_row(&self, robot: ActorId) {
+        self.traffic.prefetch_row(robot);
+        self.detection.prefetch_row(robot);
+    }
+
+    #[inline]
+    fn prefetch_contents(&self, robot: ActorId) {
+        self.traffic.prefetch_contents(robot);
+        self.detection.prefetch_contents(robot);
+    }
+
+    #[inline]
+    fn prefetch_lost(&self, receiver: ActorId, topic: Topic, cause: LossCause) {
+        self.traffic.prefetch_lost(receiver, topic, cause);
+    }
+}

@@ -1,0 +1,95 @@
+//! What arrives at robots: read when they wake, lost where they cannot hear, settled at the end.
+
+use super::Air;
+use super::transmit::copy_of;
+use crate::engine::{ActorId, SimTime, Span};
+use crate::happenings::Observer;
+use crate::protocol::{Protocol, Reception};
+use crate::radio::LossCause;
+
+/// From an instant to the next.
+const INSTANT: Span = Span::from_nanos(1);
+
+impl<P: Protocol> Air<P> {
+    /// From `now` on `receiver` can hear or not. A copy is lost if its receiver cannot hear at the instant of its arrival;
+    /// one that arrived before can still be read.
+    pub fn set_hearing(&mut self, now: SimTime, receiver: ActorId, hears: bool, observer: &mut impl Observer) {
+        if hears == self.hears(receiver) {
+            return;
+        }
+        if hears {
+            self.lose_unheard(now, receiver, observer);
+            self.deaf_since[receiver.index()] = SimTime::NEVER;
+            self.deaf -= 1;
+        } else {
+            self.deaf_since[receiver.index()] = now;
+            self.deaf += 1;
+        }
+    }
+
+    fn hears(&self, receiver: ActorId) -> bool {
+        self.deaf == 0 || self.deaf_since[receiver.index()] == SimTime::NEVER
+    }
+
+    /// Loses what has arrived at `receiver` before `until` and could not be heard.
+    fn lose_unheard(&mut self, until: SimTime, receiver: ActorId, observer: &mut impl Observer) {
+        if self.hears(receiver) {
+            return;
+        }
+        let since = self.deaf_since[receiver.index()];
+        if since < until {
+            self.inboxes[receiver.index()].drop_arrivals(since, until, |reception| {
+                let copy = copy_of::<P>(&reception.frame, receiver);
+                observer.lost(&copy, LossCause::ReceiverDown, reception.at);
+            });
+        }
+    }
+
+    /// Hands over what has reached `receiver` by `now`, and counts it as delivered.
+    pub fn deliver(
+        &mut self,
+        now: SimTime,
+        receiver: ActorId,
+        arrived: &mut Vec<Reception<P::Heard>>,
+        observer: &mut impl Observer,
+    ) {
+        self.lose_unheard(now + INSTANT, receiver, observer);
+        self.inboxes[receiver.index()].take_arrived(now, arrived);
+        for reception in arrived.iter() {
+            observer.delivered(&copy_of::<P>(&reception.frame, receiver), reception.at, Some(now));
+        }
+    }
+
+    /// What is on its way to `receiver`.
+    pub fn waiting(&self, receiver: ActorId) -> &[Reception<P::Heard>] {
+        self.inboxes[receiver.index()].waiting()
+    }
+
+    /// The earliest arrival that still waits for `receiver`; none if it cannot hear.
+    pub fn next_arrival(&self, receiver: ActorId) -> SimTime {
+        let next = || self.inboxes[receiver.index()].next_arrival();
+        self.hears(receiver).then(next).flatten().unwrap_or(SimTime::NEVER)
+    }
+
+    /// Moves out the robots that frames were sent to since the last call.
+    pub fn take_reached(&mut self, into: &mut Vec<ActorId>) {
+        into.append(&mut self.reached);
+    }
+
+    /// Settles what still waits when the run ends at `end`: arrived means delivered, else in flight.
+    pub fn settle(&mut self, end: SimTime, observer: &mut impl Observer) {
+        for receiver in 0..self.inboxes.len() as u32 {
+            self.lose_unheard(end + INSTANT, ActorId(receiver), observer);
+        }
+        for (receiver, inbox) in (0..).map(ActorId).zip(&self.inboxes) {
+            for reception in inbox.waiting() {
+                let copy = copy_of::<P>(&reception.frame, receiver);
+                if reception.at <= end {
+                    observer.delivered(&copy, reception.at, None);
+                } else {
+                    observer.in_flight(&copy, reception.at);
+                }
+            }
+        }
+    }
+}

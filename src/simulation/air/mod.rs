@@ -1,0 +1,190 @@
+//! Between a robot that sends and the robots that hear: encode, offer to the medium, put arrivals into inboxes.
+
+use bytes::BytesMut;
+
+use super::error::RunError;
+use super::inbox::Inbox;
+use crate::engine::{ActorId, SimTime, Span, outgrows_cache, prefetch};
+use crate::faults::Faults;
+use crate::happenings::Observer;
+use crate::motion::World;
+use crate::protocol::{Frame, Output, Protocol};
+use crate::radio::{Listener, LossCause, Medium};
+
+mod encode;
+mod hearing;
+mod transmit;
+
+/// A copy that will arrive.
+struct Arrival {
+    receiver: ActorId,
+    at: SimTime,
+    displacement: [f32; 2],
+}
+
+/// A message of the present frame, and the robot that it is for if it is for one.
+struct Spoken<M> {
+    frame: Frame<M>,
+    to: Option<ActorId>,
+}
+
+/// What a transmission depends on beside the radio: where everybody is, and what fails.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// Where robots are.
+    pub world: &'a World,
+    /// What fails.
+    pub faults: &'a Faults,
+}
+
+/// The radio's side of a run.
+pub struct Air<P: Protocol> {
+    medium: Medium,
+    codec: P::Codec,
+    inboxes: Vec<Inbox<P::Heard>>,
+    /// The payload under way, and who hears the present sender: buffers, kept to be used again.
+    payload: BytesMut,
+    listeners: Vec<Listener>,
+    /// While a frame for some of them is under way, all of them; else a buffer.
+    all_listeners: Vec<Listener>,
+    all_hindrances: Vec<f64>,
+    /// The messages of the present frame: one, or all of a wake where they share one.
+    aboard: Vec<Spoken<P::Heard>>,
+    piggyback: bool,
+    /// For each robot the number of its next message.
+    sequences: Vec<u32>,
+    /// The copies of the present frame that will arrive. Fates are decided first and inboxes filled after: the one is
+    /// arithmetic, the other waits for memory, and apart each runs at its own pace.
+    arrivals: Vec<Arrival>,
+    /// Those that will not, and why.
+    losses: Vec<(ActorId, LossCause)>,
+    /// Which listeners the faults of links hinder, and with what probability; empty where nothing is wrong with links.
+    hindrances: Vec<f64>,
+    /// The listeners that the present frame reaches in spite of the faults of links.
+    reachable: Vec<Listener>,
+    /// Since when each robot has been unable to hear; `NEVER` if it hears.
+    deaf_since: Vec<SimTime>,
+    /// How many robots cannot hear: while all do, nobody is looked up in `deaf_since`.
+    deaf: usize,
+    /// Receivers whose next arrival may have come forward, for scenarios that wake robots on reception.
+    reached: Vec<ActorId>,
+    tell_reached: bool,
+    /// Whether memory is asked for before it is needed.
+    prefetches: bool,
+}
+
+impl<P: Protocol> Air<P> {
+    /// An empty air around `robots` robots. `piggyback`: whether the messages of a wake share a frame; `wake_on_reception`:
+    /// whether [`reached`](Self::take_reached) is kept.
+    pub fn new(medium: Medium, robots: usize, piggyback: bool, wake_on_reception: bool) -> Self {
+        Self {
+            medium,
+            codec: P::Codec::default(),
+            inboxes: std::iter::repeat_with(Inbox::default).take(robots).collect(),
+            payload: BytesMut::with_capacity(256),
+            listeners: Vec::new(),
+            all_listeners: Vec::new(),
+            all_hindrances: Vec::new(),
+            aboard: Vec::new(),
+            piggyback,
+            sequences: vec![0; robots],
+            arrivals: Vec::new(),
+            losses: Vec::new(),
+            hindrances: Vec::new(),
+            reachable: Vec::new(),
+            deaf_since: vec![SimTime::NEVER; robots],
+            deaf: 0,
+            reached: Vec::new(),
+            tell_reached: wake_on_reception,
+            prefetches: outgrows_cache(robots),
+        }
+    }
+
+    /// Asks for what is kept of `robot`, which is to wake soon.
+    pub fn prefetch_row(&self, robot: ActorId) {
+        prefetch(&self.inboxes[robot.index()]);
+        prefetch(&self.sequences[robot.index()]);
+        self.medium.prefetch_row(robot);
+    }
+
+    /// Asks for what waits for `robot`, and for who will hear it.
+    pub fn prefetch_contents(&self, robot: ActorId, world: &World) {
+        self.inboxes[robot.index()].prefetch_contents();
+        world.prefetch_neighbours(robot, self.medium.range());
+    }
+
+    /// So long what a robot sends reaches nobody.
+    pub fn lookahead(&self) -> Span {
+        self.medium.lookahead()
+    }
+
+    /// Puts on air what `sender` says at `now`, and takes it out of `output`.
+    pub fn say(
+        &mut self,
+        now: SimTime,
+        sender: ActorId,
+        output: &mut Output<P::Message>,
+        place: Surroundings<'_>,
+        observer: &mut impl Observer,
+    ) -> Result<(), RunError> {
+        let Surroundings { world, faults } = place;
+        self.listeners.clear();
+        let Self { listeners, inboxes, .. } = self;
+        let prefetches = self.prefetches;
+        world.for_each_within(sender, now, self.medium.range(), |id, from_sender| {
+            if prefetches {
+                prefetch(&inboxes[id.index()]);
+            }
+            listeners.push(Listener {
+                id,
+                sender: -from_sender,
+            });
+        });
+        self.hindrances.clear();
+        if faults.trouble_links() {
+            let here = world.position(sender, now);
+            let hindrance = |listener: &Listener| {
+                let there = world.position(listener.id, now);
+                faults.link_loss((sender, here), (listener.id, there))
+            };
+            self.hindrances.extend(self.listeners.iter().map(hindrance));
+        }
+        if output.sends.is_empty() && !self.piggyback {
+            // Nearly always: each message is for everyone, in a frame of its own.
+            for message in output.broadcasts.drain(..) {
+                let spoken = self.encode(now, sender, None, message, observer)?;
+                self.transmit::<false>(now, std::slice::from_ref(&spoken), faults, observer);
+            }
+        } else {
+            self.say_in_turn(now, sender, output, faults, observer)?;
+        }
+        observer.spoke(now, sender, world);
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn say_in_turn(
+        &mut self,
+        now: SimTime,
+        sender: ActorId,
+        output: &mut Output<P::Message>,
+        faults: &Faults,
+        observer: &mut impl Observer,
+    ) -> Result<(), RunError> {
+        for (to, message) in output.drain_said() {
+            let spoken = self.encode(now, sender, to, message, observer)?;
+            if self.piggyback {
+                self.aboard.push(spoken);
+            } else {
+                self.send(now, std::slice::from_ref(&spoken), faults, observer);
+            }
+        }
+        if !self.aboard.is_empty() {
+            let mut aboard = std::mem::take(&mut self.aboard);
+            self.send(now, &aboard, faults, observer);
+            aboard.clear();
+            self.aboard = aboard;
+        }
+        Ok(())
+    }
+}
