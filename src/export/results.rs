@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::folder::{Contents, Folder, MANIFEST, SUMMARY};
+use super::files::{MANIFEST, SUMMARY};
+use super::folder::{Contents, Folder};
 use super::manifest::{Difference, Manifest};
 use super::place::FolderError;
 use super::read::{self, NameLists};

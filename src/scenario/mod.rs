@@ -8,6 +8,7 @@
 
 mod checks;
 mod detector;
+mod diagnostic;
 mod document;
 #[cfg_attr(not(feature = "command"), path = "plain.rs")]
 mod drawn;
@@ -36,11 +37,12 @@ mod warnings;
 mod write;
 
 pub use crate::text::Style;
+pub use diagnostic::{Diagnostic, Place};
 pub use file::{contents, load, question};
 pub use overrides::Override;
 pub use protocol::ProtocolConfig;
 pub use read::{examine, parse};
-pub use report::{Diagnostic, Place, Report, Warnings};
+pub use report::{Report, Warnings};
 pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,
