@@ -3,6 +3,7 @@
 mod comparison;
 mod explanation;
 mod failures;
+mod further;
 mod grid;
 #[cfg(feature = "command")]
 mod html;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::failures;
+use super::further;
 use super::grid::Grid;
 use super::layout::Page;
 use super::missed::{self, Asked};
@@ -62,6 +63,7 @@ pub fn terminal(input: &Input) -> String {
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
     detection(&mut page, input);
+    further::section(&mut page, input.summary);
     surprises::section(&mut page, input.surprises);
     run(&mut page, input);
     page.text()

@@ -25,10 +25,11 @@
 //! let out = dir.path().join("out");
 //! let results = run_study(&StudyRun::of(&plan), &out, &Options::default(), |_| ())?;
 //!
-//! let delivered: Vec<Option<f64>> =
-//!     results.comparison.settings.iter().map(|setting| setting.figures["delivery_ratio"].value).collect();
-//! assert_eq!(delivered[0], Some(1.0));
-//! assert!((delivered[1].unwrap() - 0.5).abs() < 0.1);
+//! let settings = results.comparison.settings.iter();
+//! let delivered: Vec<f64> =
+//!     settings.filter_map(|setting| setting.figure("delivery_ratio")?.estimate.value).collect();
+//! assert_eq!(delivered[0], 1.0);
+//! assert!((delivered[1] - 0.5).abs() < 0.1);
 //! assert!(out.join("lossy/summary.json").exists());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

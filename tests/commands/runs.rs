@@ -170,7 +170,15 @@ fn results_of_something_else_are_refused_and_replaced_only_when_that_is_asked_fo
 #[test]
 fn a_trial_that_fails_is_told_from_an_interruption_and_cancels_nobody_else() {
     let dir = place();
-    let crowded = scenario("arena: (size: (0.2, 0.2))");
+    // As many robots as a file may ask for: packed, they would fit.
+    let crowd = |robots: u32| {
+        let text = format!(
+            "Scenario(name: \"a\", time_limit: 10.0, swarm: (robots: {robots}, deploy: Uniform), protocol: Heartbeat, \
+             arena: (size: (0.5, 0.5)))"
+        );
+        parse("a.ron", &text, &[]).ok()
+    };
+    let crowded = (1..).map_while(crowd).last().unwrap();
     let options = Options::default();
     let error = run_scenario(&ScenarioRun::of(&crowded), &dir.path().join("out"), &options, |_| ()).unwrap_err();
     assert!(matches!(error, RunsError::Trial { .. }), "{error:?}");

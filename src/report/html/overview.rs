@@ -5,10 +5,10 @@ use super::detection;
 use crate::metrics::summary::Spread;
 use crate::predict;
 use crate::report::number::{self, count, estimate, figure, percent, seconds};
-use crate::report::surprises;
+use crate::report::{further, surprises};
 
 /// What was found, a name and a value each.
-pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
+pub fn rows(input: &PageInput) -> Vec<(String, String)> {
     let summary = input.summary;
     let mut rows = Vec::new();
     let completion = &summary.completion_ratio.estimate;
@@ -65,10 +65,12 @@ pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
         let share = estimate(&summary.duplicates.total, percent);
         rows.push(("duplicates in the messages delivered", share));
     }
+    let mut rows: Vec<(String, String)> = rows.into_iter().map(|(name, words)| (name.to_owned(), words)).collect();
+    rows.extend(further::rows(summary));
     let surprises = predict::surprises(input.scenario, summary);
     for (together, why) in surprises::by_reason(&surprises) {
         let figures: Vec<_> = together.into_iter().map(surprises::words).collect();
-        rows.push(("not as predicted", format!("{}: {why}", figures.join("; "))));
+        rows.push(("not as predicted".to_owned(), format!("{}: {why}", figures.join("; "))));
     }
     rows
 }
