@@ -527,7 +527,22 @@ class Folder:
             "detection": self.failure_detection(),
             "steps": {"value": self.trials["steps"].sum()},
             "simulated_s": {"value": total(self.trials["simulated_s"])},
+            **self.further(),
         }
+
+    def further(self):
+        """The figures of the general list that a trial has."""
+        period = self.trials["control_period_s"][0]
+        in_range = self.samples(lambda rows: math.fsum(live) / len(live) if len(live := rows.filter(pl.col("components") > 0)["neighbours"]) else None)
+        rows = self.trials.select("outcome", "steps_to_completion", "simulated_s").iter_rows()
+        times = [(done * period, True) if outcome == "completed" else (end, False) for outcome, done, end in rows if outcome != "no_mission"]
+        cut_off = sum(not done for _, done in times)
+        found = {
+            "completion_s": {**mean([seconds for seconds, _ in times], "count"), **({"cut_off": cut_off} if cut_off else {})},
+            "neighbours": mean(list(in_range), "mean"),
+        }
+        known = {key: figure for key, figure in found.items() if figure["value"] is not None}
+        return {"figures": known} if known else {}
 
 
 def miss(rows, end, k):
@@ -557,7 +572,7 @@ def leaves(value, path=""):
     """Every figure with its path; units and names are no figures."""
     if isinstance(value, dict):
         for key, inner in value.items():
-            if key not in ("unit", "scenario"):
+            if key not in ("unit", "scenario", "name"):
                 yield from leaves(inner, f"{path}.{key}" if path else key)
     elif isinstance(value, list):
         for index, inner in enumerate(value):

@@ -98,7 +98,7 @@
 //!
 //! [`engine`], [`geometry`], [`quantity`], [`statistics`] and [`text`] know no robots; [`radio`], [`motion`], [`protocol`] and [`faults`] are pure
 //! models that do not know each other; [`happenings`] is what observers of a run are told; a [`kind`] is a protocol that a scenario can name, and [`kinds`] are those that it can; [`scenario`] is what a run is given and [`metrics`] what it leaves; [`simulation`] is one run,
-//! [`experiment`] many; [`export`], [`report`] and [`cli`] face people. `ARCHITECTURE.md` walks the paths through them.
+//! [`experiment`] many; [`export`] and [`report`] put them on disk and into words, [`runs`] does all of it into a folder; `cli` faces people. `ARCHITECTURE.md` walks the paths through them.
 
 #[cfg(feature = "command")]
 pub mod cli;
@@ -117,6 +117,7 @@ pub mod protocol;
 pub mod quantity;
 pub mod radio;
 pub mod report;
+pub mod runs;
 pub mod scenario;
 pub mod simulation;
 pub mod statistics;

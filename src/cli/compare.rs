@@ -5,16 +5,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use serde_json::json;
 
 use super::check::{self, Deny};
 use super::failure::Failure;
-use super::output::say;
-use super::settings::Settings;
 use super::shown::{Format, print_comparison};
-use crate::export::{FolderError, StudyFolder, StudyManifest};
-use crate::metrics::comparison::Comparison;
+use super::told::{Teller, options};
+use crate::runs::{StudyRun, Until, run_study};
 use crate::scenario::{Plan, contents, is_study, load_study, plan_of_files};
+use crate::simulation::DriverKind;
 use crate::text::shown;
 
 /// What `desim compare --help` says.
@@ -85,17 +83,21 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     let plan = plan(arguments)?;
     check::heed(&plan.all_warnings(), arguments.deny)?;
     let default_out = || PathBuf::from("results").join(&plan.name);
-    let folder = StudyFolder::new(arguments.out.clone().unwrap_or_else(default_out));
-    let names = plan.settings.iter().map(|setting| setting.name.clone()).collect();
-    let mut manifest = StudyManifest::new(described(&plan, arguments), names);
-    let comparison = match finished(&folder, &mut manifest, arguments)? {
-        Some(comparison) => comparison,
-        None => Settings::open(&folder, &plan, arguments, &manifest)?.compare(manifest)?,
+    let dir = arguments.out.clone().unwrap_or_else(default_out);
+    let run = StudyRun {
+        plan: &plan,
+        until: arguments.until_width.map(|width| Until {
+            width,
+            most_trials: arguments.most_trials,
+        }),
     };
+    let options = options(arguments.jobs, DriverKind::Inline, arguments.force)?;
+    let mut teller = Teller::of_study(&dir, arguments.quiet);
+    let results = run_study(&run, &dir, &options, |happening| teller.tell(happening))?;
     if arguments.quiet && arguments.format == Format::Text {
         return Ok(());
     }
-    print_comparison(&comparison, &folder, arguments.format)
+    print_comparison(&results.comparison, &results.folder, arguments.format)
 }
 
 /// What is to be compared.
@@ -130,75 +132,4 @@ fn plan(arguments: &CompareArguments) -> Result<Plan, Failure> {
         Some(_) => plan.with_most_trials(arguments.most_trials),
         None => plan,
     })
-}
-
-/// What the results depend on, beside the settings' scenarios.
-fn described(plan: &Plan, arguments: &CompareArguments) -> serde_json::Value {
-    let until_width = arguments
-        .until_width
-        .map(|width| json!({"width": width, "most_trials": arguments.most_trials}));
-    json!({
-        "name": plan.name,
-        "question": plan.question,
-        "factors": plan.factors,
-        "trials": plan.settings.iter().map(|setting| setting.scenario.trials).collect::<Vec<_>>(),
-        "figures": plan.figures,
-        "reference": plan.reference,
-        "relevant": plan.relevant,
-        "pareto": plan.pareto,
-        "until_width": until_width,
-    })
-}
-
-/// The comparison, if it is there and finished. The folder is then ready for the others: it holds nothing, or trials of the same
-/// study, whose files `asked` then names.
-fn finished(
-    folder: &StudyFolder,
-    asked: &mut StudyManifest,
-    arguments: &CompareArguments,
-) -> Result<Option<Comparison>, Failure> {
-    let there = match folder.contents() {
-        Ok(Some(there)) => there,
-        Ok(None) => return Ok(None),
-        // Whatever it was, it is to be replaced.
-        Err(FolderError::Altered { .. } | FolderError::Version { .. }) if arguments.force => asked.clone(),
-        Err(error) => return Err(error.into()),
-    };
-    if arguments.force {
-        for name in &there.settings {
-            // Opening the trials makes sure that nobody is running them.
-            let trials = folder.setting(name).trials();
-            if trials.exists() {
-                drop(crate::experiment::Parts::open(&trials)?);
-            }
-        }
-        folder.clear(&there.settings)?;
-        return Ok(None);
-    }
-    let differences = there.differences(asked);
-    if !differences.is_empty() {
-        return Err(Failure::Input(format!(
-            "error: {} holds results of another study:\n  {}\nChoose another folder with --out, or replace them with --force.",
-            shown(folder.path()),
-            differences.join("\n  "),
-        )));
-    }
-    if there.finished {
-        let comparison = folder.finished(&there)?;
-        folder.hold_page(&there)?;
-        folder.tidy(&there);
-        arguments.remark(&format!("{} holds these results already", shown(folder.path())));
-        return Ok(Some(comparison));
-    }
-    asked.files = there.files;
-    Ok(None)
-}
-
-impl CompareArguments {
-    /// Says something in passing.
-    pub fn remark(&self, words: &str) {
-        if !self.quiet {
-            say(words);
-        }
-    }
 }

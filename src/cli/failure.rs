@@ -3,8 +3,9 @@
 use std::io;
 
 use super::output::style;
-use crate::experiment::PartsError;
+use crate::experiment::{PartsError, TrialError};
 use crate::export::{FolderError, ResultsError, WriteError};
+use crate::runs::{Cause, Other, RunsError};
 use crate::scenario::Report;
 
 /// Exit status where the input is wrong.
@@ -89,6 +90,31 @@ impl From<WriteError> for Failure {
         match error {
             WriteError::Parts(error) => error.into(),
             WriteError::Folder(error) => error.into(),
+        }
+    }
+}
+
+impl From<RunsError> for Failure {
+    fn from(error: RunsError) -> Self {
+        let words = match &error {
+            // What is left is said with what to do about it.
+            RunsError::Taken { of: Other::Setting, .. } => format!("error: {error}\nChoose another folder with --out."),
+            RunsError::Taken { .. } => {
+                format!("error: {error}\nChoose another folder with --out, or replace them with --force.")
+            }
+            RunsError::Interrupted { kept: 0, .. } => error.to_string(),
+            RunsError::Interrupted { .. } => format!("{error}; run the same command to go on"),
+            // It would be so in any trial.
+            RunsError::Trial {
+                source: TrialError::Deploy(error),
+                ..
+            } => format!("error: {error}"),
+            error => format!("error: {error}"),
+        };
+        match error.cause() {
+            Cause::Input => Self::Input(words),
+            Cause::Interruption => Self::Interrupted(words),
+            Cause::Other => Self::Other(words),
         }
     }
 }

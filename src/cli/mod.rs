@@ -23,8 +23,8 @@ mod progress;
 pub mod report;
 pub mod scenario;
 pub mod schema;
-mod settings;
 pub mod shown;
+mod told;
 
 use std::ffi::OsString;
 use std::io::{self, Write};

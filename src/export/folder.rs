@@ -6,21 +6,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::Tables;
+use super::files::{MANIFEST, PAGE, PICTURES, SUMMARY};
 use super::held::{FileEntry, held, measure, sealed, unseal};
 use super::manifest::Manifest;
-use super::place::{FolderError, Place, failed, gone};
-use super::write::WriteError;
+use super::place::{FolderError, Place, WriteError, failed, gone};
 use crate::experiment::Parts;
 use crate::metrics::Summary;
 
-/// What a folder is the result of.
-pub const MANIFEST: &str = "manifest.json";
-/// The summary's file.
-pub const SUMMARY: &str = "summary.json";
-/// The page of charts. It follows from the other files and may be missing.
-pub const PAGE: &str = "report.html";
-/// Pictures of a trial, before its number.
-pub const PICTURES: [&str; 2] = ["final", "trajectories"];
 const TRIALS: &str = ".trials";
 
 /// A folder that holds, or will hold, the results of one experiment.

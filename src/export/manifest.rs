@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::folder::PAGE;
+use super::files::PAGE;
 use super::held::FileEntry;
 use crate::scenario::Scenario;
 

@@ -5,6 +5,7 @@
 
 #[cfg(feature = "parquet")]
 mod comparison_table;
+mod files;
 mod folder;
 mod held;
 mod manifest;
@@ -23,14 +24,15 @@ mod table;
 mod tables;
 mod write;
 
-pub use folder::{Contents, Folder, PAGE};
+pub use files::PAGE;
+pub use folder::{Contents, Folder};
 pub use held::{FileEntry, sealed};
 pub use manifest::{Difference, Manifest, TrialEntry};
 pub use names::Names;
-pub use place::{FolderError, json};
+pub use place::{FolderError, WriteError, json};
 pub use read::NameLists;
 pub use results::{Results, ResultsError};
 pub use scene::Scene;
 pub use study::{StudyFolder, StudyManifest};
 pub use tables::Tables;
-pub use write::{Pictures, WriteError, write};
+pub use write::{Pictures, write};

@@ -4,6 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::experiment::PartsError;
 use crate::text::{is_unsafe, shown};
 
 /// A folder cannot hold results, or those in it cannot be shown.
@@ -67,6 +68,31 @@ impl FolderError {
             reason: reason.to_string(),
             there: there.to_owned(),
         }
+    }
+}
+
+/// Results could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// A finished trial cannot be read back.
+    #[error(transparent)]
+    Parts(#[from] PartsError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+}
+
+impl WriteError {
+    /// Whether the place takes no files from this user, rather than that something went wrong.
+    #[must_use]
+    pub fn is_refused(&self) -> bool {
+        let (Self::Parts(PartsError::Io { source, .. }) | Self::Folder(FolderError::Io { source, .. })) = self else {
+            return false;
+        };
+        matches!(
+            source.kind(),
+            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem
+        )
     }
 }
 

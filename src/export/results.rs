@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::folder::{Contents, Folder, MANIFEST, SUMMARY};
+use super::files::{MANIFEST, SUMMARY};
+use super::folder::{Contents, Folder};
 use super::manifest::{Difference, Manifest};
 use super::place::FolderError;
 use super::read::{self, NameLists};
@@ -106,8 +107,13 @@ impl Results {
         if !others.is_empty() {
             let [topics, roles]: [Vec<&str>; 2] =
                 [&all.names.topics, &all.names.roles].map(|names| names.iter().map(String::as_str).collect());
-            all.summary = Summary::of(&all.scenario.name, &topics, &roles, &all.records)
-                .noting(&all.scenario.protocol.figures(), &all.records);
+            all.summary = Summary::by(
+                &all.scenario.figures(),
+                &all.scenario.name,
+                &topics,
+                &roles,
+                &all.records,
+            );
         }
         Ok(all)
     }

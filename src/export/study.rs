@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::folder::{Contents, Folder, MANIFEST, PAGE, hold_page};
+use super::files::{MANIFEST, PAGE};
+use super::folder::{Contents, Folder, hold_page};
 use super::held::{FileEntry, held, sealed, unseal};
 use super::manifest::{Difference, Manifest, compare, made_by};
 use super::picture;

@@ -1,14 +1,13 @@
 //! From the finished trials of an experiment to its results folder.
 
-use std::io;
-
-use super::folder::{Contents, Folder, SUMMARY};
+use super::files::SUMMARY;
+use super::folder::{Contents, Folder};
 use super::manifest::{Manifest, TrialEntry};
 use super::names::Names;
-use super::place::{FolderError, failed, json};
+use super::place::{FolderError, WriteError, failed, json};
 use super::scene::Scene;
 use super::tables::Tables;
-use crate::experiment::{FinishedTrial, Parts, PartsError};
+use crate::experiment::{FinishedTrial, Parts};
 use crate::metrics::{Summary, TrialRecord};
 use crate::scenario::Scenario;
 
@@ -22,31 +21,6 @@ pub enum Pictures {
     First,
     /// Of all.
     All,
-}
-
-/// Results could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum WriteError {
-    /// A finished trial cannot be read back.
-    #[error(transparent)]
-    Parts(#[from] PartsError),
-    /// A file cannot be written.
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-}
-
-impl WriteError {
-    /// Whether the place takes no files from this user, rather than that something went wrong.
-    #[must_use]
-    pub fn is_refused(&self) -> bool {
-        let (Self::Parts(PartsError::Io { source, .. }) | Self::Folder(FolderError::Io { source, .. })) = self else {
-            return false;
-        };
-        matches!(
-            source.kind(),
-            io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem
-        )
-    }
 }
 
 /// Writes the results of `scenario`, all of whose trials are in `parts`, to `folder`: one trial at a time, in order,
@@ -87,8 +61,7 @@ pub fn write(
     }
     let tables = tables.finish().map_err(failed("write", parts.dir()))?;
     files.extend(tables.into_iter().map(str::to_owned));
-    let summary =
-        Summary::of(&scenario.name, names.topics, names.roles, &records).noting(&scenario.protocol.figures(), &records);
+    let summary = Summary::by(&scenario.figures(), &scenario.name, names.topics, names.roles, &records);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());
     for name in files {

@@ -19,6 +19,7 @@ mod series;
 mod spread;
 pub mod summary;
 mod traffic;
+mod unit;
 
 pub use crate::statistics::Estimate;
 pub use completion::Progress;

@@ -5,7 +5,7 @@ use super::noted::{Amount, Values};
 use super::record::TrialRecord;
 use crate::statistics::{Estimator, Part};
 
-/// What keys of such figures begin with, in studies and tables; in `summary.json` they stand under `noted`.
+/// What keys of such figures begin with, so that they are told from others.
 pub const PREFIX: &str = "noted.";
 
 /// A figure of what robots [count](crate::protocol::Output::count) and [measure](crate::protocol::Output::measure).

@@ -337,6 +337,8 @@ pub struct ConnectivitySample {
     pub lambda2: f64,
     /// Connected components.
     pub components: u32,
+    /// How many others a robot has in range, mean over robots; 0 where there are none.
+    pub neighbours: f64,
     /// Robots in each role, in order of the protocol's roles.
     pub roles: Vec<u32>,
     /// Vertex-disjoint chains from each target's worker to the root, nl(t) of paper eq. 5, in order of targets.

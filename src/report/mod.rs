@@ -3,12 +3,12 @@
 mod comparison;
 mod explanation;
 mod failures;
+mod further;
 mod grid;
 #[cfg(feature = "command")]
 mod html;
 mod layout;
 mod missed;
-mod noted;
 mod number;
 mod preflight;
 mod spread;

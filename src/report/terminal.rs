@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::failures;
+use super::further;
 use super::grid::Grid;
 use super::layout::Page;
 use super::missed::{self, Asked};
-use super::noted::noted_words;
 use super::number::{NOTHING, count, estimate, figure, lasted, maybe, percent, seconds};
 use super::spread;
 use super::surprises;
@@ -63,19 +63,10 @@ pub fn terminal(input: &Input) -> String {
     radio(&mut page, input.summary);
     connectivity(&mut page, input.summary);
     detection(&mut page, input);
-    noted(&mut page, input.summary);
+    further::section(&mut page, input.summary);
     surprises::section(&mut page, input.surprises);
     run(&mut page, input);
     page.text()
-}
-
-/// The protocol's own figures.
-fn noted(page: &mut Page, summary: &Summary) {
-    let Some(noted) = &summary.noted else { return };
-    page.heading("Protocol");
-    for (_, figure_of) in &noted.0 {
-        page.words(&format!("{}: {}", figure_of.name, noted_words(figure_of)));
-    }
 }
 
 fn outcome(page: &mut Page, input: &Input) {

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, Severity, SourceCode};
 
+use super::diagnostic::{Diagnostic, Kind, Place};
 use super::lines::line_start;
-use super::report::{Diagnostic, Kind, Place};
 use crate::text::{Style, clean, clean_lines, columns};
 
 /// Longest line that is shown around an error, bytes.

@@ -4,9 +4,10 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use super::diagnostic::{Diagnostic, Place};
 use super::overrides::Override;
 use super::read::parse;
-use super::report::{Diagnostic, Place, Report};
+use super::report::Report;
 use super::{Scenario, limits};
 
 /// Reads the scenario file at `path`, with `overrides` worked in, in order.

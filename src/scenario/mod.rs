@@ -8,6 +8,7 @@
 
 mod checks;
 mod detector;
+mod diagnostic;
 mod document;
 #[cfg_attr(not(feature = "command"), path = "plain.rs")]
 mod drawn;
@@ -36,11 +37,12 @@ mod warnings;
 mod write;
 
 pub use crate::text::Style;
+pub use diagnostic::{Diagnostic, Place};
 pub use file::{contents, load, question};
 pub use overrides::Override;
 pub use protocol::ProtocolConfig;
 pub use read::{examine, parse};
-pub use report::{Diagnostic, Place, Report, Warnings};
+pub use report::{Report, Warnings};
 pub use study::{
     DesignConfig, FactorConfig, LevelConfig, Plan, RonText, Setting, Study, is_study, load_study, plan_of_files,
     study_schema,
@@ -53,6 +55,7 @@ use serde::{Deserialize, Serialize};
 use crate::faults::FaultConfig;
 use crate::kind::{Sections, Shared};
 use crate::metrics::MetricsConfig;
+use crate::metrics::figures::Registry;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig, Site};
 use crate::protocol::CompletionConfig;
 use crate::protocol::control::ControlConfig;
@@ -158,6 +161,12 @@ impl Scenario {
     #[must_use]
     pub fn topics(&self) -> &'static [&'static str] {
         self.protocol.topics(&self.detector)
+    }
+
+    /// The figures of its trials: those of all protocols, and its protocol's own.
+    #[must_use]
+    pub fn figures(&self) -> Registry {
+        Registry::of(self.protocol.all_topics()).noting(&self.protocol.figures())
     }
 
     /// Whether robots run the failure detector that it sets.

@@ -3,8 +3,9 @@
 use std::str::FromStr;
 use std::sync::Arc;
 
+use super::diagnostic::{Diagnostic, Place};
 use super::path::{FieldPath, Step, contents, follow, parts, variant};
-use super::report::{Diagnostic, Place, Report};
+use super::report::Report;
 use super::shape::Shape;
 use super::source::{Origin, Piece, Source};
 use super::token::Span;

@@ -6,11 +6,12 @@ use std::sync::Arc;
 
 use ron::error::Error;
 
+use super::diagnostic::{Diagnostic, Place};
 use super::document::Document;
 use super::explain::{Finding, explain, nearest};
 use super::overrides::Override;
 use super::path::{FieldPath, Step, field_at, follow, head, path_at};
-use super::report::{Diagnostic, Place, Report, Warnings};
+use super::report::{Report, Warnings};
 use super::source::{Source, blank};
 use super::token::{Faults, Span};
 use super::tree;

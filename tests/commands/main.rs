@@ -6,4 +6,5 @@ mod shipped;
 mod harm;
 #[cfg(feature = "parquet")]
 mod results_folder;
+mod runs;
 mod studies;

@@ -10,7 +10,7 @@ mod trajectories;
 
 pub use pareto::draw as pareto;
 
-use super::folder::PICTURES;
+use super::files::PICTURES;
 use super::scene::Scene;
 use crate::geometry::Vec2;
 use crate::metrics::{Outcome, TrialRecord};

@@ -9,6 +9,7 @@ use crate::metrics::{ConnectivitySample, RobotState, TargetSample, TargetState};
 pub fn connectivity(records: &mut Records, table: &Table) -> Result<(), Wrong> {
     let (trial, time) = (table.ids("trial")?, table.numbers("time_s")?);
     let (lambda2, components) = (table.numbers("lambda2")?, table.ids("components")?);
+    let neighbours = table.numbers("neighbours")?;
     let roles = records.names.roles.iter();
     let roles: Vec<_> = roles
         .map(|role| table.optional_ids(&format!("robots_{role}")))
@@ -29,6 +30,7 @@ pub fn connectivity(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             at: SimTime::from_secs(time[row]),
             lambda2: lambda2[row],
             components: components[row],
+            neighbours: neighbours[row],
             roles: at(&roles, row),
             links: at(&links, row),
             targets: targets

@@ -27,6 +27,7 @@ pub fn columns(names: &Names, targets: usize) -> Vec<Column<Row>> {
         Col::f64("time_s", |row| row.sample.at.as_secs()),
         Col::f64("lambda2", |row| row.sample.lambda2),
         Col::id("components", |row| row.sample.components),
+        Col::f64("neighbours", |row| row.sample.neighbours),
     ];
     columns.extend(
         names

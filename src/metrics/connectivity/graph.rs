@@ -68,6 +68,15 @@ impl Graph {
         &self.edges
     }
 
+    /// Edges at a vertex, mean over vertices; 0 without vertices.
+    #[must_use]
+    pub fn mean_degree(&self) -> f64 {
+        if self.vertices == 0 {
+            return 0.0;
+        }
+        2.0 * self.edges.len() as f64 / self.vertices as f64
+    }
+
     /// Number of connected components.
     #[must_use]
     pub fn components(&self) -> usize {

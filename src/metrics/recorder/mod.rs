@@ -248,13 +248,14 @@ impl Recorder {
             .map(|(_, position)| *position)
             .collect();
         let graph = Graph::within_range(&live, self.radio_range);
-        let components = graph.components() as u32;
+        let (components, neighbours) = (graph.components() as u32, graph.mean_degree());
         let lambda2 = self.lambda2(graph);
         let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
         self.connectivity.push(ConnectivitySample {
             at: now,
             lambda2,
             components,
+            neighbours,
             roles: self.reports.count_roles(self.roles),
             links: self
                 .judge

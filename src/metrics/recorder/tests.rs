@@ -1,5 +1,6 @@
 use super::*;
 use crate::faults::{Effect, Health};
+use crate::metrics::figures::Registry;
 use crate::protocol::Role;
 
 const RANGE: f64 = 2.0;
@@ -141,6 +142,15 @@ fn the_graph_is_that_of_live_robots_and_of_nobody_nothing_is_said() {
     let record = recorder.finish(end());
     let components: Vec<u32> = record.connectivity.iter().map(|sample| sample.components).collect();
     assert_eq!(components, [1, 2, 1, 0], "a path, its ends, one of them, nobody");
+    let neighbours: Vec<f64> = record.connectivity.iter().map(|sample| sample.neighbours).collect();
+    assert_eq!(
+        neighbours,
+        [4.0 / 3.0, 0.0, 0.0, 0.0],
+        "of the path's robots one has two and two have one"
+    );
+    let registry = Registry::of(&["a", "b"]);
+    let (seen, _) = registry.estimate("neighbours", std::slice::from_ref(&record));
+    assert_eq!(seen.value, Some(4.0 / 9.0), "nobody is no sample");
     // Whose least λ₂ is that of the two ends, who are in two pieces; one robot has none.
     assert_eq!(record.lambda2_min(), Some(0.0));
     assert_eq!(record.connected_share(), Some(2.0 / 3.0), "nobody is not in one piece");

@@ -4,10 +4,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::record::{TrafficRow, TrialRecord, Volume};
+use crate::metrics::unit::{DIMENSIONLESS, Unit};
 use crate::statistics::{Estimate, mean, quantile};
 
-use super::Figures;
-use super::quantity::{DIMENSIONLESS, Named, Quantity, Unit};
+use super::estimates::Figures;
+use super::quantity::{Named, Quantity};
 
 /// Bandwidth of robots.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Suspicion, Verdict};
-use crate::statistics::Observation;
+use crate::metrics::detection::{Cause, DetectionRecord, Suspicion, Verdict};
+use crate::metrics::figures::mistakes;
+use crate::metrics::unit::{DIMENSIONLESS, SECONDS, Unit};
 
-use super::Figures;
-use super::quantity::{DIMENSIONLESS, Lasted, Measured, Named, Quantity, Unit};
+use super::estimates::Figures;
+use super::quantity::{Lasted, Measured, Named, Quantity};
 
 const SUSPICIONS: &str = "suspicions";
-const SECONDS: &str = "s";
 
 /// Failure detection over all trials; [`crate::metrics::detection`] defines the figures. Estimates are ratios of sums over
 /// trials, so that a trial without a mistake counts with the time that it was watched. What was cut off is neither left out nor
@@ -87,36 +87,6 @@ impl Detection {
             },
         }
     }
-}
-
-/// The suspicions of a trial that were mistakes.
-pub(in crate::metrics) fn mistakes(trial: &DetectionRecord) -> impl Iterator<Item = &Suspicion> {
-    trial
-        .suspicions
-        .iter()
-        .filter(|suspicion| suspicion.verdict() == Verdict::Mistake)
-}
-
-/// How long each failure was watched until it was detected, or cut off.
-#[must_use]
-pub fn detection_times(trial: &DetectionRecord) -> Vec<Observation> {
-    let seen = trial.failures.iter().map(|failure| Observation {
-        time: failure.watched.as_secs(),
-        happened: matches!(failure.outcome, FailureOutcome::Detected(_)),
-    });
-    seen.collect()
-}
-
-/// How long each mistake lasted until trust, or until it was cut off.
-#[must_use]
-pub fn mistake_durations(trial: &DetectionRecord) -> Vec<Observation> {
-    let durations = trial.suspicions.iter().filter_map(|suspicion| {
-        Some(Observation {
-            time: suspicion.duration?.as_secs(),
-            happened: !suspicion.cut_off,
-        })
-    });
-    durations.collect()
 }
 
 impl Suspicions {

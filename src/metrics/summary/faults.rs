@@ -3,11 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::engine::SimTime;
+use crate::metrics::figures::mending;
 use crate::metrics::record::{FaultKind, HealingEpisode, TrialRecord};
+use crate::metrics::unit::{SECONDS, Unit};
 use crate::statistics::{Estimate, Estimator, Observation, Part, median_survival, pseudo_values};
 
-use super::quantity::{Lasted, Measured, Named, Unit};
-use super::{SECONDS, mean_count};
+use super::estimates::mean_count;
+use super::quantity::{Lasted, Measured, Named};
 
 /// What failed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -120,14 +122,6 @@ impl HealingSummary {
                 harmful(&|episode| (episode.overlapping > 0) == (place == 1))
             }),
         })
-    }
-}
-
-/// How long the harm of a failure lasted, or was watched in vain until the trial's end, seconds.
-pub(in crate::metrics) fn mending(episode: &HealingEpisode, end: SimTime) -> Observation {
-    Observation {
-        time: episode.healed_at.unwrap_or(end).since(episode.failed_at).as_secs(),
-        happened: episode.healed_at.is_some(),
     }
 }
 

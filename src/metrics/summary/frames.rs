@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::record::{TopicFates, TrialRecord};
+use crate::metrics::unit::Unit;
 use crate::radio::LossCause;
-use crate::statistics::Part;
 
-use super::quantity::{Named, Unit};
+use super::quantity::Named;
 
 /// Frames by fate over all trials, a copy for each intended receiver; offered = delivered + in flight + lost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,19 +56,4 @@ impl Fates {
             lost: Named::of(LossCause::ALL.map(LossCause::name), |cause| sum.lost[cause]),
         }
     }
-}
-
-/// Copies of one trial that are delivered, and those offered. What is under way at the end has not been lost so far: it counts as
-/// delivered in the share of those that came as far as their receiver and were heard there. So copies under way bias nothing.
-pub(in crate::metrics) fn delivery(record: &TrialRecord) -> Part {
-    let mut sum = TopicFates::default();
-    record.ledger.iter().for_each(|fates| sum.add(fates));
-    let unheard = sum.lost[LossCause::ReceiverDown as usize];
-    let arrived = (sum.delivered + unheard) as f64;
-    let heard = if unheard > 0 {
-        sum.delivered as f64 / arrived
-    } else {
-        1.0
-    };
-    [sum.delivered as f64 + sum.in_flight as f64 * heard, sum.offered as f64]
 }

@@ -207,6 +207,7 @@ mod tests {
             at: at(place),
             lambda2: 1.0,
             components: 1,
+            neighbours: 4.0,
             roles: vec![5],
             links: stands.iter().map(|stand| stand.2).collect(),
             targets: stands

@@ -2,20 +2,25 @@
 //!
 //! Everything here follows from the records alone and depends on no machine. Keys and their order are stable.
 
-pub(super) mod bandwidth;
-pub(super) mod detection;
-pub(super) mod faults;
-pub(super) mod frames;
+mod bandwidth;
+mod detection;
+mod estimates;
+mod faults;
+mod frames;
+mod listed;
 mod missed;
 mod quantity;
-pub(super) mod spread;
+mod spread;
 
+pub use super::figures::{detection_times, mistake_durations};
+pub use super::unit::Unit;
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
-pub use detection::{Detection, Failures, Suspicions, detection_times, mistake_durations};
+pub use detection::{Detection, Failures, Suspicions};
 pub use faults::{FaultSummary, Healed, HealingSummary, HealingTime};
 pub use frames::{Fates, Frames};
+pub use listed::Listed;
 pub use missed::{MissedSummary, MissedTarget};
-pub use quantity::{Lasted, Measured, Named, Quantity, Unit};
+pub use quantity::{Lasted, Measured, Named, Quantity};
 pub use spread::{Duplicates, SpreadSummary, SpreadTime};
 
 use serde::{Deserialize, Serialize};
@@ -23,15 +28,12 @@ use xxhash_rust::xxh3::xxh3_128;
 
 use crate::engine::Span;
 
-use super::figures::{Registry, Sample};
+use super::figures::{Registry, completion};
 use super::latency::LatencyHistogram;
-use super::noted_figure::NotedFigure;
 use super::record::{Outcome, TrialRecord};
-use crate::statistics::{Estimate, Estimator, Observation, median_survival};
-pub(super) use quantity::DIMENSIONLESS;
-
-pub(super) const STEPS: &str = "control steps";
-pub(super) const SECONDS: &str = "s";
+use super::unit::{DIMENSIONLESS, SECONDS, STEPS};
+use crate::statistics::{Estimate, Observation, median_survival};
+use estimates::Figures;
 
 /// The figures of all trials of one scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,13 +83,13 @@ pub struct Summary {
     pub duplicates: Duplicates,
     /// Failure detection, against the truth.
     pub detection: Detection,
-    /// The protocol's own figures, of what its robots count and measure; absent where it has none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub noted: Option<Named<NotedSummary>>,
     /// Control steps simulated, over all trials.
     pub steps: Quantity<u64>,
     /// Time simulated, over all trials.
     pub simulated_s: Quantity<f64>,
+    /// The figures that have no place of their own above, by their keys; those that no trial has are absent.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub figures: Named<Listed>,
 }
 
 /// Control steps until a mission is complete.
@@ -132,15 +134,17 @@ impl Summary {
     /// that its protocol gives them.
     #[must_use]
     pub fn of(scenario: &str, topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Self {
+        Self::by(&Registry::of(topics), scenario, topics, roles, records)
+    }
+
+    /// As [`of`](Self::of), by the figures of `registry`, which has at least those that desim ships for these topics.
+    #[must_use]
+    pub fn by(registry: &Registry, scenario: &str, topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Self {
         let completed = records
             .iter()
             .filter(|record| matches!(record.outcome, Outcome::Completed { .. }))
             .count() as u64;
-        let registry = Registry::of(topics);
-        let figures = &Figures {
-            registry: &registry,
-            records,
-        };
+        let figures = &Figures { registry, records };
         Self {
             scenario: scenario.to_owned(),
             trials: records.len() as u64,
@@ -162,7 +166,6 @@ impl Summary {
             spread: SpreadSummary::of(figures),
             duplicates: Duplicates::of(topics, figures),
             detection: Detection::of(figures),
-            noted: None,
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
                 unit: STEPS.into(),
@@ -171,91 +174,15 @@ impl Summary {
                 value: records.iter().map(|record| record.simulated.as_secs()).sum(),
                 unit: SECONDS.into(),
             },
+            figures: Listed::all(registry, records),
         }
     }
-}
-
-impl Summary {
-    /// The same, with the protocol's own figures of what its robots noted in `records`.
-    #[must_use]
-    pub fn noting(mut self, figures: &[NotedFigure], records: &[TrialRecord]) -> Self {
-        let summary = |place: usize| {
-            let noted: &NotedFigure = &figures[place];
-            let samples: Vec<Sample> = records.iter().map(|record| noted.read(record)).collect();
-            NotedSummary {
-                name: noted.name.to_owned(),
-                estimate: noted.figure().estimate(&samples),
-                unit: noted.unit.into(),
-            }
-        };
-        self.noted = (!figures.is_empty()).then(|| Named::of(figures.iter().map(|noted| noted.key), summary));
-        self
-    }
-}
-
-/// A protocol's own figure.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct NotedSummary {
-    /// What reports call it.
-    pub name: String,
-    /// The figure over trials.
-    #[serde(flatten)]
-    pub estimate: Estimate,
-    /// Its unit.
-    pub unit: Unit,
-}
-
-/// The figures of a protocol over the trials to be summarised: the ones that comparisons show.
-struct Figures<'a> {
-    registry: &'a Registry,
-    records: &'a [TrialRecord],
-}
-
-impl Figures<'_> {
-    fn estimate(&self, key: &str) -> Estimate {
-        self.registry.estimate(key, self.records).0
-    }
-
-    fn measured(&self, key: &str, unit: &'static str) -> Measured {
-        Measured {
-            estimate: self.estimate(key),
-            unit: unit.into(),
-        }
-    }
-
-    fn lasted(&self, key: &str) -> Lasted {
-        let (estimate, lasting) = self.registry.estimate(key, self.records);
-        Lasted {
-            estimate,
-            cut_off: lasting.cut_off,
-            restricted_to: lasting.restricted_to,
-            unit: SECONDS.into(),
-        }
-    }
-}
-
-/// The mean of whole numbers over trials.
-fn mean_count(records: &[TrialRecord], count: impl Fn(&TrialRecord) -> f64) -> Estimate {
-    Estimator::Count.estimate(&records.iter().map(|record| [count(record), 1.0]).collect::<Vec<_>>())
 }
 
 /// XXH3-128 of the trials' digests, each as 16 bytes, least significant first.
 fn digest(records: &[TrialRecord]) -> String {
     let bytes: Vec<u8> = records.iter().flat_map(|record| record.digest.to_le_bytes()).collect();
     format!("{:032x}", xxh3_128(&bytes))
-}
-
-/// Control steps until the mission of a trial was complete, or that it was watched in vain; `None` without a mission.
-pub(super) fn completion(record: &TrialRecord) -> Option<Observation> {
-    let (step, happened) = match record.outcome {
-        Outcome::Completed { step } => (step, true),
-        Outcome::Censored => (record.steps, false),
-        Outcome::NoMission => return None,
-    };
-    Some(Observation {
-        time: step as f64,
-        happened,
-    })
 }
 
 impl StepsToCompletion {

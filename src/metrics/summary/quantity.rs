@@ -1,19 +1,13 @@
 //! The shapes that figures take in a summary: a value with its unit, an estimate with its unit, figures by name.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::metrics::unit::Unit;
 use crate::statistics::Estimate;
-
-/// Name of a unit.
-pub type Unit = Cow<'static, str>;
-
-/// The unit of what has none: ratios, shares, λ₂.
-pub(in crate::metrics) const DIMENSIONLESS: &str = "1";
 
 /// A figure that is counted, not estimated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,7 +48,25 @@ pub struct Lasted {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named<T>(pub Vec<(String, T)>);
 
+impl<T> Default for Named<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
 impl<T> Named<T> {
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The figure called `name`.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&T> {
+        self.0.iter().find(|(own, _)| own == name).map(|(_, figure)| figure)
+    }
+
     /// `figure` of each of `names`, by its place.
     pub(in crate::metrics) fn of<'a>(names: impl IntoIterator<Item = &'a str>, figure: impl Fn(usize) -> T) -> Self {
         Self(

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::SimTime;
-use crate::metrics::record::{TrafficRow, TrialRecord};
-use crate::statistics::{Estimate, Estimator, Observation, Part, median_survival};
+use crate::metrics::figures::Pairs;
+use crate::metrics::unit::{DIMENSIONLESS, SECONDS, Unit};
+use crate::statistics::{Estimate, Estimator, Observation, median_survival};
 
-use super::quantity::{DIMENSIONLESS, Measured, Named, Unit};
-use super::{Figures, SECONDS};
+use super::estimates::Figures;
+use super::quantity::{Measured, Named};
 
 /// How rumours spread over the robots that nothing ails at the end of their trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,54 +42,6 @@ impl SpreadSummary {
             time_to_all: SpreadTime::of(&trials, |count| count),
         })
     }
-}
-
-/// The pairs of a robot and a rumour in one trial.
-struct Pairs {
-    count: usize,
-    /// When each of the informed ones was informed, in order.
-    times: Vec<SimTime>,
-    end: SimTime,
-}
-
-impl Pairs {
-    fn of(record: &TrialRecord) -> Option<Self> {
-        let failed = record.failed_at_end();
-        let rumors = record.spread.iter();
-        let pairs = rumors.flat_map(|rumor| (0..).zip(&rumor.informed));
-        let well: Vec<Option<SimTime>> = pairs
-            .filter(|(robot, _)| failed.binary_search_by_key(robot, |failed| failed.0).is_err())
-            .map(|(_, at)| *at)
-            .collect();
-        let mut times: Vec<SimTime> = well.iter().copied().flatten().collect();
-        times.sort_unstable();
-        // Of nobody there is nothing to say.
-        (!well.is_empty()).then_some(Self {
-            count: well.len(),
-            times,
-            end: record.simulated,
-        })
-    }
-}
-
-impl Pairs {
-    fn informed_ratio(&self) -> f64 {
-        self.times.len() as f64 / self.count as f64
-    }
-}
-
-/// The share of all pairs of a robot and a rumour in which the robot knew the rumour at the end of a trial; `None` without rumours, or without robots that
-/// are well.
-pub(in crate::metrics) fn informed_ratio(record: &TrialRecord) -> Option<f64> {
-    Pairs::of(record).map(|pairs| pairs.informed_ratio())
-}
-
-/// Duplicates in a trial and messages delivered, of the rows of traffic that `counts` accepts.
-pub(in crate::metrics) fn duplicates(record: &TrialRecord, counts: impl Fn(&TrafficRow) -> bool) -> Part {
-    let rows = || record.traffic.iter().filter(|row| counts(row));
-    let received: u64 = rows().map(|row| row.received.frames).sum();
-    let duplicate: u64 = rows().map(|row| row.duplicate.frames).sum();
-    [duplicate as f64, received as f64]
 }
 
 impl SpreadTime {

@@ -4,12 +4,11 @@ use super::PageInput;
 use super::detection;
 use crate::metrics::summary::Spread;
 use crate::predict;
-use crate::report::noted::noted_words;
 use crate::report::number::{self, count, estimate, figure, percent, seconds};
-use crate::report::surprises;
+use crate::report::{further, surprises};
 
 /// What was found, a name and a value each.
-pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
+pub fn rows(input: &PageInput) -> Vec<(String, String)> {
     let summary = input.summary;
     let mut rows = Vec::new();
     let completion = &summary.completion_ratio.estimate;
@@ -66,15 +65,12 @@ pub fn rows(input: &PageInput) -> Vec<(&'static str, String)> {
         let share = estimate(&summary.duplicates.total, percent);
         rows.push(("duplicates in the messages delivered", share));
     }
-    if let Some(noted) = &summary.noted {
-        let figures = input.scenario.protocol.figures();
-        let told = figures.iter().zip(&noted.0);
-        rows.extend(told.map(|(figure, (_, found))| (figure.name, noted_words(found))));
-    }
+    let mut rows: Vec<(String, String)> = rows.into_iter().map(|(name, words)| (name.to_owned(), words)).collect();
+    rows.extend(further::rows(summary));
     let surprises = predict::surprises(input.scenario, summary);
     for (together, why) in surprises::by_reason(&surprises) {
         let figures: Vec<_> = together.into_iter().map(surprises::words).collect();
-        rows.push(("not as predicted", format!("{}: {why}", figures.join("; "))));
+        rows.push(("not as predicted".to_owned(), format!("{}: {why}", figures.join("; "))));
     }
     rows
 }

@@ -1,15 +1,13 @@
 //! The figures that a study compares: those that all of its settings have.
 
 use crate::kind::Problem;
-use crate::metrics::figures::Registry;
 use crate::scenario::Scenario;
 use crate::scenario::explain::nearest;
 
 /// Keys of the figures that every setting has.
 pub fn common(scenarios: &[&Scenario]) -> Vec<String> {
     let of = |scenario: &Scenario| -> Vec<String> {
-        let registry = Registry::of(scenario.protocol.all_topics()).noting(&scenario.protocol.figures());
-        registry.figures().map(|figure| figure.key.clone()).collect()
+        scenario.figures().figures().map(|figure| figure.key.clone()).collect()
     };
     let mut known: Option<Vec<String>> = None;
     for scenario in scenarios {

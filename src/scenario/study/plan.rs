@@ -6,10 +6,11 @@ use std::sync::Arc;
 use super::design::{combinations, is_name, labels, name};
 use super::{Study, figures};
 use crate::kind::Problem;
+use crate::scenario::diagnostic::{Diagnostic, Place};
 use crate::scenario::file::{contents, question};
 use crate::scenario::path::{FieldPath, follow};
 use crate::scenario::read::{between, document};
-use crate::scenario::report::{Diagnostic, Place, Report, Warnings};
+use crate::scenario::report::{Report, Warnings};
 use crate::scenario::{Override, Scenario, examine, limits, parse, tree};
 
 /// What is to be run and compared.

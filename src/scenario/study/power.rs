@@ -2,7 +2,7 @@
 
 use super::Plan;
 use crate::metrics::comparison::{Contrasts, Factor, SIGNIFICANT, TooFew};
-use crate::scenario::report::Diagnostic;
+use crate::scenario::diagnostic::Diagnostic;
 
 impl Plan {
     /// Says, before anything is run, if so few trials cannot show any of the differences that the study asks for, and how many could.

@@ -235,6 +235,7 @@ fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {
         at: SimTime::from_secs(sample as f64 * 5.0),
         lambda2,
         components: if sample == 7 { 2 } else { 1 },
+        neighbours: 1.0 + odd / 8.0,
         roles: vec![2, 1, 4, 2],
         links: vec![1, u32::from(sample > 3)],
         targets: targets(sample),

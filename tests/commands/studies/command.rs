@@ -19,7 +19,7 @@ const STUDY: &str = "// Does patience pay?\nStudy(name: \"patience\", base: \"ba
     reference: [\"short\"], figure: \"detection.mistake_rate_hz\", also: [\"detection.query_accuracy\", \"delivery_ratio\"], \
     pareto: (\"detection.mistake_rate_hz\", \"detection.query_accuracy\"))";
 
-fn place() -> TempDir {
+pub fn place() -> TempDir {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("base.ron"), BASE).unwrap();
     fs::write(dir.path().join("study.ron"), STUDY).unwrap();
@@ -41,7 +41,7 @@ pub fn comparison(dir: &Path) -> Value {
 }
 
 /// Every file below `dir` but the manifests of settings, which hold wall times.
-fn bytes(dir: &Path) -> BTreeMap<String, Vec<u8>> {
+pub fn bytes(dir: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![dir.to_owned()];
     while let Some(folder) = folders.pop() {

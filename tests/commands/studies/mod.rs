@@ -1,6 +1,6 @@
 //! Studies: their files, the command that runs them, and what people read of them.
 
-mod command;
+pub mod command;
 mod factors;
 mod files;
 mod harm;

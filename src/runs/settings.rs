@@ -2,34 +2,28 @@
 
 use std::collections::BTreeMap;
 
-use tokio_util::sync::CancellationToken;
-
-use super::compare::CompareArguments;
-use super::failure::Failure;
-use super::interrupt;
-use super::progress::Progress;
-use super::scenario::{failure, threads};
-use crate::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
-use crate::experiment::{TrialError, run_trial};
+use super::asked::{StudyRun, Until};
+use super::error::{Other, RunsError};
+use super::options::Options;
+use super::trials::{Happening, run_missing};
+use crate::experiment::{Ending, FinishedTrial, Parts};
 use crate::export::{self, Contents, Folder, Manifest, Pictures, StudyFolder, StudyManifest};
 use crate::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials, widest};
 use crate::metrics::figures::{Figure, Registry, Sample, pool};
 use crate::report;
 use crate::scenario::{Plan, Scenario, Setting};
-use crate::simulation::DriverKind;
-use crate::text::shown;
 
 /// The settings of a study, ready to run.
-pub struct Settings<'a> {
+pub(super) struct Settings<'a> {
     study: &'a StudyFolder,
     plan: &'a Plan,
-    arguments: &'a CompareArguments,
+    until: Option<Until>,
+    options: &'a Options,
     cells: Vec<Cell<'a>>,
     /// What the figures are that all settings have.
     figures: Vec<Figure>,
     /// The comparison, if an attempt that was cut short has come that far.
     compared: Option<Comparison>,
-    stop: CancellationToken,
 }
 
 /// A setting that is run.
@@ -50,16 +44,12 @@ impl<'a> Settings<'a> {
     /// Makes sure that each setting's folder holds nothing, or trials of that very setting. Writes nothing yet.
     pub fn open(
         study: &'a StudyFolder,
-        plan: &'a Plan,
-        arguments: &'a CompareArguments,
+        run: &StudyRun<'a>,
+        options: &'a Options,
         manifest: &StudyManifest,
-    ) -> Result<Self, Failure> {
-        let registries: Vec<Registry> = plan
-            .settings
-            .iter()
-            .map(|setting| &setting.scenario.protocol)
-            .map(|protocol| Registry::of(protocol.all_topics()).noting(&protocol.figures()))
-            .collect();
+    ) -> Result<Self, RunsError> {
+        let plan = run.plan;
+        let registries: Vec<Registry> = plan.settings.iter().map(|setting| setting.scenario.figures()).collect();
         let figures = common(&registries);
         let compared = study.comparison(manifest)?;
         let mut cells = Vec::new();
@@ -76,11 +66,11 @@ impl<'a> Settings<'a> {
                     differences.push("finished there, though the study is not".to_owned());
                 }
                 if !differences.is_empty() {
-                    return Err(Failure::Input(format!(
-                        "error: {} holds results that are not this study's:\n  {}\nChoose another folder with --out.",
-                        shown(folder.path()),
-                        differences.join("\n  "),
-                    )));
+                    return Err(RunsError::Taken {
+                        dir: folder.path().to_owned(),
+                        of: Other::Setting,
+                        differences,
+                    });
                 }
             }
             let places = figures
@@ -99,22 +89,25 @@ impl<'a> Settings<'a> {
         Ok(Self {
             study,
             plan,
-            arguments,
+            until: run.until,
+            options,
             cells,
             figures,
             compared,
-            stop: CancellationToken::new(),
         })
     }
 
     /// Runs the trials that are missing, compares, and writes everything.
-    pub fn compare(mut self, mut manifest: StudyManifest) -> Result<Comparison, Failure> {
-        interrupt::cancels(&self.stop).map_err(|error| Failure::other(&error))?;
+    pub fn compare(
+        mut self,
+        mut manifest: StudyManifest,
+        tell: &mut dyn FnMut(Happening),
+    ) -> Result<Comparison, RunsError> {
         self.study.declare(&manifest)?;
         self.claim(&mut manifest)?;
         let comparison = match self.compared.take() {
             Some(comparison) => comparison,
-            None => self.simulate(&mut manifest)?,
+            None => self.simulate(&mut manifest, tell)?,
         };
         for cell in &mut self.cells {
             if let Some(parts) = cell.parts.take() {
@@ -128,7 +121,7 @@ impl<'a> Settings<'a> {
     }
 
     /// Opens the trials of every setting whose results have not been written yet; those of the others go into `manifest`.
-    fn claim(&mut self, manifest: &mut StudyManifest) -> Result<(), Failure> {
+    fn claim(&mut self, manifest: &mut StudyManifest) -> Result<(), RunsError> {
         for cell in &mut self.cells {
             if let Contents::Results(there) = cell.folder.contents()?
                 && there.finished
@@ -144,14 +137,18 @@ impl<'a> Settings<'a> {
         Ok(())
     }
 
-    fn simulate(&mut self, manifest: &mut StudyManifest) -> Result<Comparison, Failure> {
+    fn simulate(
+        &mut self,
+        manifest: &mut StudyManifest,
+        tell: &mut dyn FnMut(Happening),
+    ) -> Result<Comparison, RunsError> {
         let batch: Vec<u32> = self.cells.iter().map(|cell| cell.scenario.trials).collect();
         let stopping = loop {
-            self.batch(manifest)?;
-            let Some(width) = self.arguments.until_width else {
+            self.batch(manifest, tell)?;
+            let Some(until) = self.until else {
                 break None;
             };
-            let stopping = self.stopping(width);
+            let stopping = self.stopping(until);
             if stopping.reached || stopping.trials >= stopping.cap {
                 break Some(stopping);
             }
@@ -185,74 +182,51 @@ impl<'a> Settings<'a> {
     }
 
     /// Runs the trials that are missing, of all settings in one pool.
-    fn batch(&mut self, manifest: &StudyManifest) -> Result<(), Failure> {
+    fn batch(&mut self, manifest: &StudyManifest, tell: &mut dyn FnMut(Happening)) -> Result<(), RunsError> {
         self.recall();
-        let Self {
-            cells, stop, arguments, ..
-        } = self;
-        let total = cells.iter().map(|cell| cell.scenario.trials).sum();
-        let kept: usize = cells.iter().map(|cell| cell.told.len()).sum();
-        if kept > 0 && kept < total as usize {
-            arguments.remark(&format!("going on after {kept} of {total} trials"));
-        }
+        let kept: usize = self.cells.iter().map(|cell| cell.told.len()).sum();
         let mut told: Vec<(usize, u32, Vec<Sample>)> = Vec::new();
         let ending = {
-            let experiments: Vec<Experiment> = cells
+            let run: Vec<(&Cell, &Parts)> = self
+                .cells
                 .iter()
-                .filter_map(|cell| {
-                    Some(Experiment {
-                        trials: cell.scenario.trials,
-                        seed: cell.scenario.seed,
-                        parts: cell.parts.as_ref()?,
-                    })
-                })
+                .filter_map(|cell| Some((cell, cell.parts.as_ref()?)))
                 .collect();
-            let pool = Pool {
-                jobs: threads(arguments.jobs),
-                stop,
+            let trials: Vec<(&Scenario, &Parts)> = run.iter().map(|(cell, parts)| (&cell.scenario, *parts)).collect();
+            let finished = |place: usize, part: &FinishedTrial| {
+                told.push((place, part.record.trial, run[place].0.registry.read(&part.record)));
             };
-            let scenarios: Vec<&Scenario> = cells.iter().map(|cell| &cell.scenario).collect();
-            let mut progress = Progress::start(total, kept as u32, arguments.quiet);
-            let run = |cell: usize, trial| run_trial(scenarios[cell], trial, DriverKind::Inline, stop);
-            pool.run(&experiments, run, |cell, part| {
-                progress.count(part);
-                told.push((cell, part.record.trial, cells[cell].registry.read(&part.record)));
-            })
+            run_missing(&trials, kept as u32, self.options, finished, tell)
         };
         for (cell, trial, samples) in told {
             self.cells[cell].told.insert(trial, samples);
         }
-        match ending {
-            Ok(Ending::Finished) => Ok(()),
-            Ok(Ending::Interrupted) => Err(Failure::Interrupted(self.leave(manifest)?)),
-            Err(error) => Err(self.failed(error, manifest)?),
+        if let Ok(Ending::Finished) = ending {
+            return Ok(());
         }
+        let interrupted = self.leave(manifest)?;
+        ending?;
+        Err(interrupted)
     }
 
-    fn failed(&mut self, error: ExperimentError<TrialError>, manifest: &StudyManifest) -> Result<Failure, Failure> {
-        self.leave(manifest)?;
-        Ok(failure(error))
-    }
-
-    /// Leaves an unfinished study: finished trials stay, and if there are none, nothing does. Says so.
-    fn leave(&mut self, manifest: &StudyManifest) -> Result<String, Failure> {
+    /// Leaves an unfinished study: finished trials stay, and if there are none, nothing does. Answers how many there are.
+    fn leave(&mut self, manifest: &StudyManifest) -> Result<RunsError, RunsError> {
         let kept: usize = self.cells.iter().map(|cell| cell.told.len()).sum();
-        let total: u32 = self.cells.iter().map(|cell| cell.scenario.trials).sum();
         for cell in &mut self.cells {
             cell.parts = None;
         }
         if kept == 0 {
             self.study.clear(&manifest.settings)?;
-            return Ok("interrupted before a trial had finished; nothing is kept".to_owned());
         }
-        Ok(format!(
-            "interrupted: {kept} of {total} trials are kept in {}; run the same command to go on",
-            shown(self.study.path())
-        ))
+        Ok(RunsError::Interrupted {
+            kept,
+            trials: self.cells.iter().map(|cell| cell.scenario.trials).sum(),
+            dir: self.study.path().to_owned(),
+        })
     }
 
     /// Whether the intervals are narrow enough by now.
-    fn stopping(&self, width: f64) -> Stopping {
+    fn stopping(&self, Until { width, most_trials }: Until) -> Stopping {
         let design = self.design();
         let figure = design.compared.first().copied().unwrap_or(0);
         let widest = widest(&self.figures[figure], &self.trials(), figure);
@@ -262,7 +236,7 @@ impl<'a> Settings<'a> {
             width,
             widest,
             trials,
-            cap: self.arguments.most_trials,
+            cap: most_trials,
             reached: widest.is_some_and(|widest| widest <= width),
         }
     }

@@ -1,0 +1,109 @@
+//! What a figure is, and what a trial tells of one.
+
+use serde::{Deserialize, Serialize};
+
+use crate::metrics::unit::Unit;
+use crate::statistics::{Estimate, Estimator, Lasting, Observation, Part, pseudo_values};
+
+/// Key of the steps until a mission is complete.
+pub const COMPLETION: &str = "steps_to_completion";
+
+/// What a figure is.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Figure {
+    /// Its key.
+    pub key: String,
+    /// What reports call it.
+    pub name: String,
+    /// Its unit.
+    pub unit: Unit,
+    /// Which way is better.
+    pub better: Better,
+    /// Whether it is a ratio of sums, which a trial may not have on its own; otherwise a mean over trials.
+    pub is_ratio: bool,
+    /// How it is estimated.
+    pub estimator: Estimator,
+}
+
+/// Which way a figure is better.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Better {
+    /// The less the better.
+    Lower,
+    /// The more the better.
+    Higher,
+}
+
+/// What a trial tells of a figure.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Numerator and denominator; both 0 where the trial tells nothing.
+    pub part: Part,
+    /// Whether the value was cut off: it would have grown larger, had the trial gone on.
+    pub is_censored: bool,
+    /// The times that the trial tells of, where the figure is their mean; empty for other figures. Its part follows from those of all
+    /// trials: see [`pool`].
+    pub times: Vec<Observation>,
+}
+
+impl Sample {
+    /// The trial's own value, if it has one.
+    #[must_use]
+    pub fn value(&self) -> Option<f64> {
+        (self.part[1] > 0.0).then(|| self.part[0] / self.part[1])
+    }
+
+    /// Of a ratio of sums: the trial's numerator and denominator.
+    #[must_use]
+    pub fn ratio(part: Part) -> Self {
+        Self {
+            part,
+            ..Self::default()
+        }
+    }
+
+    /// Of a mean over trials: the trial's value, if it has one.
+    #[must_use]
+    pub fn plain(value: Option<f64>) -> Self {
+        Self::ratio(value.map_or([0.0; 2], |value| [value, 1.0]))
+    }
+
+    /// Of a mean of times, of which some may have been cut off.
+    #[must_use]
+    pub fn times(times: Vec<Observation>) -> Self {
+        Self {
+            is_censored: times.iter().any(|seen| !seen.happened),
+            times,
+            ..Self::default()
+        }
+    }
+}
+
+/// Gives the samples of one setting and figure their parts where these follow from the times of all trials. Other samples stay as they
+/// are.
+pub fn pool(samples: &mut [Sample]) -> Option<Lasting> {
+    let times: Vec<&[Observation]> = samples.iter().map(|sample| sample.times.as_slice()).collect();
+    if times.iter().all(|times| times.is_empty()) {
+        return None;
+    }
+    let (parts, lasting) = pseudo_values(&times);
+    for (sample, part) in samples.iter_mut().zip(parts) {
+        sample.part = part;
+    }
+    Some(lasting)
+}
+
+impl Figure {
+    /// The figure over trials, one sample each.
+    #[must_use]
+    pub fn estimate(&self, samples: &[Sample]) -> Estimate {
+        self.estimator.estimate(&parts(samples))
+    }
+}
+
+/// The parts of trials.
+#[must_use]
+pub fn parts(samples: &[Sample]) -> Vec<Part> {
+    samples.iter().map(|sample| sample.part).collect()
+}
