@@ -139,7 +139,7 @@ pub struct Sent<'a> {
     pub size: MessageSize,
     /// Its number among the sender's messages, from 0.
     pub sequence: u32,
-    /// How many robots it is offered to: each gets a [`Copy`], whatever becomes of it.
+    /// How many robots it is offered to: each gets a [`Copy`](struct@Copy), whatever becomes of it.
     pub copies: u64,
     /// Whether robots hear it that it is not for.
     pub overheard: bool,

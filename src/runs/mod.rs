@@ -6,21 +6,22 @@
 //! [`Happening`].
 //!
 //! ```
+//! use std::path::Path;
+//!
 //! use desim::runs::{Options, StudyRun, run_study};
-//! use desim::scenario::plan_of_files;
+//! use desim::scenario::{Override, load, plan_of_files, to_ron};
 //!
 //! let dir = tempfile::tempdir()?;
-//! let files = [("calm", 0.0), ("lossy", 0.5)].map(|(name, loss)| {
-//!     let text = format!(
-//!         "Scenario(name: \"{name}\", trials: 3, time_limit: 20.0, swarm: (robots: 4, deploy: Uniform), protocol: Heartbeat,
-//!          detector: Timeout(5.0), arena: (size: (1.0, 1.0)), radio: (range: 2.0, loss: Bernoulli({loss})))"
-//!     );
-//!     (dir.path().join(format!("{name}.ron")), text)
-//! });
-//! for (path, text) in &files {
-//!     std::fs::write(path, text)?;
+//! let mut files = Vec::new();
+//! for (name, loss) in [("calm", 0.0), ("lossy", 0.5)] {
+//!     let loss = format!("radio.loss=Bernoulli({loss:?})");
+//!     let settings = [&format!("name=\"{name}\""), "trials=3", "time_limit=20.0", &loss];
+//!     let settings: Result<Vec<Override>, _> = settings.map(str::parse).into_iter().collect();
+//!     let path = dir.path().join(format!("{name}.ron"));
+//!     std::fs::write(&path, to_ron(&load(Path::new("scenarios/heartbeat.ron"), &settings?)?))?;
+//!     files.push(path);
 //! }
-//! let plan = plan_of_files(&files.each_ref().map(|(path, _)| path))?.with_figures(&["delivery_ratio".to_owned()])?;
+//! let plan = plan_of_files(&files)?.with_figures(&["delivery_ratio".to_owned()])?;
 //!
 //! let out = dir.path().join("out");
 //! let results = run_study(&StudyRun::of(&plan), &out, &Options::default(), |_| ())?;
