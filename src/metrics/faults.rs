@@ -3,7 +3,7 @@
 use crate::engine::{ActorId, SimTime};
 use crate::faults::{Change, Health, LinkFaultKind, Subject};
 
-use super::record::{FaultEpisode, FaultKind};
+use super::episode::{FaultEpisode, FaultKind};
 use super::reports::Reports;
 
 /// What has failed so far and what fails now.

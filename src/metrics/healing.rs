@@ -5,8 +5,8 @@ use crate::faults::{Change, Subject};
 use crate::geometry::{Vec2, at_most};
 use crate::protocol::Topic;
 
+use super::episode::HealingEpisode;
 use super::mission::{Mission, Scene};
-use super::record::HealingEpisode;
 use super::reports::Reports;
 
 /// Every failure of a robot that works for a target, and those whose harm is not mended yet.

@@ -5,6 +5,7 @@ mod completion;
 mod config;
 mod connectivity;
 pub mod detection;
+mod episode;
 mod faults;
 pub mod figures;
 mod healing;
@@ -20,20 +21,22 @@ mod spread;
 pub mod summary;
 mod traffic;
 mod unit;
+mod volume;
 
 pub use crate::statistics::Estimate;
 pub use completion::Progress;
 pub use config::MetricsConfig;
 pub use connectivity::{Chains, Graph};
+pub use episode::{FaultEpisode, FaultKind, HealingEpisode};
 pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget};
 pub use noted::{Amount, Noted, Values};
 pub use noted_figure::NotedFigure;
 pub use record::{
-    ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, Outcome, RobotBytes, RobotState, SeriesEntry,
-    TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Volume,
+    ConnectivitySample, Outcome, RobotBytes, RobotState, SeriesEntry, TargetSample, TargetState, TrialRecord,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
 pub use spread::RumorSpread;
 pub use summary::Summary;
 pub use traffic::HeaderBytes;
+pub use volume::{TopicFates, TrafficRow, Volume};

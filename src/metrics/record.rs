@@ -1,18 +1,16 @@
 //! What a trial leaves behind: plain data, read by reports and exports, never by the simulation.
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
-use crate::faults::Effect;
 use crate::geometry::Pose;
-use crate::radio::LossCause;
 
 use super::detection::{DetectionRecord, StatusTrace};
+use super::episode::{FaultEpisode, HealingEpisode};
 use super::latency::LatencyHistogram;
 use super::noted::Noted;
 use super::spread::RumorSpread;
+use super::volume::{TopicFates, TrafficRow};
 
 /// Everything that one trial leaves behind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -129,102 +127,6 @@ impl TrialRecord {
     }
 }
 
-/// A failure, from its beginning to its end.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FaultEpisode {
-    /// The fault's place in the scenario's list, from 0.
-    pub fault: u16,
-    /// What fails.
-    pub kind: FaultKind,
-    /// When it begins.
-    pub from: SimTime,
-    /// When it ends; `None` if it outlasts the trial.
-    pub until: Option<SimTime>,
-}
-
-/// A failure of a robot that worked for a target, until the target has its links again: as many vertex-disjoint chains as
-/// just before, or as it needs, if it had more. If its worker failed, or one was at the target, a live worker must also be as
-/// near to the target as then, or at it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct HealingEpisode {
-    /// The fault's place in the scenario's list, from 0.
-    pub fault: u16,
-    /// The robot that failed.
-    pub robot: ActorId,
-    /// Its role then, an index into the protocol's roles.
-    pub role: u8,
-    /// The target that it worked for.
-    pub target: u16,
-    /// When it failed.
-    pub failed_at: SimTime,
-    /// Chains of the target just before, at most as many as it needs.
-    pub links_before: u32,
-    /// Chains of the target just after, at most as many as it needs.
-    pub links_after: u32,
-    /// How far the nearest live worker was from the target just before, metres; `None` without one.
-    pub worker_m: Option<f64>,
-    /// The first control step at which the target had its links again; the time of the failure if it did no harm, `None` if the
-    /// trial ended first.
-    pub healed_at: Option<SimTime>,
-    /// Other failures whose harm to the same target was unmended at some time meanwhile.
-    pub overlapping: u32,
-    /// Way that the live robots that work for the target have made meanwhile, all together, metres.
-    pub distance_m: f64,
-    /// Frames that robots that work for the target have sent meanwhile, by topic.
-    pub frames: Vec<u64>,
-    /// Their payload, bytes.
-    pub payload_bytes: Vec<u64>,
-}
-
-impl HealingEpisode {
-    /// Whether the target was worse off just after than just before.
-    #[must_use]
-    pub fn is_harmful(&self) -> bool {
-        self.healed_at != Some(self.failed_at)
-    }
-}
-
-/// What fails.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FaultKind {
-    /// A robot.
-    Robot {
-        /// Which.
-        robot: ActorId,
-        /// What it cannot do.
-        effect: Effect,
-        /// Its role when it failed, an index into the protocol's roles.
-        role: u8,
-        /// The target that it worked for when it failed, if any.
-        target: Option<u16>,
-    },
-    /// Nothing crosses a line.
-    Partition,
-    /// Links lose more.
-    Burst,
-}
-
-impl FaultKind {
-    /// The name that reports and tables use.
-    #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Robot { effect, .. } => effect.name(),
-            Self::Partition => "partition",
-            Self::Burst => "burst",
-        }
-    }
-
-    /// The robot that fails, if it is one.
-    #[must_use]
-    pub const fn robot(&self) -> Option<ActorId> {
-        match self {
-            Self::Robot { robot, .. } => Some(*robot),
-            Self::Partition | Self::Burst => None,
-        }
-    }
-}
-
 /// How a mission ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Outcome {
@@ -238,94 +140,6 @@ pub enum Outcome {
     Censored,
     /// The protocol has no mission to complete; the run ended at its time limit.
     NoMission,
-}
-
-/// Frames of one topic by fate, counted a copy an intended receiver.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TopicFates {
-    /// Copies that transmissions offered to robots in range.
-    pub offered: u64,
-    /// Copies that arrived.
-    pub delivered: u64,
-    /// Copies lost, by [`LossCause`] in the order of [`LossCause::ALL`].
-    pub lost: [u64; LossCause::ALL.len()],
-    /// Copies under way at the end.
-    pub in_flight: u64,
-}
-
-impl TopicFates {
-    /// Whether every copy offered has exactly one fate.
-    #[must_use]
-    pub fn is_balanced(&self) -> bool {
-        self.offered == self.delivered + self.lost.iter().sum::<u64>() + self.in_flight
-    }
-
-    /// Adds the frames of `other`.
-    pub fn add(&mut self, other: &Self) {
-        self.offered += other.offered;
-        self.delivered += other.delivered;
-        self.in_flight += other.in_flight;
-        for (mine, theirs) in self.lost.iter_mut().zip(&other.lost) {
-            *mine += theirs;
-        }
-    }
-}
-
-impl fmt::Display for TopicFates {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let causes: Vec<String> = LossCause::ALL
-            .iter()
-            .zip(&self.lost)
-            .map(|(cause, frames)| format!("{} {frames}", cause.name()))
-            .collect();
-        let lost: u64 = self.lost.iter().sum();
-        write!(
-            f,
-            "offered {}, delivered {}, lost {lost} ({}), in flight {}",
-            self.offered,
-            self.delivered,
-            causes.join(", "),
-            self.in_flight
-        )
-    }
-}
-
-/// Frames and their bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Volume {
-    /// Number of frames.
-    pub frames: u64,
-    /// Their payload, bytes.
-    pub payload_bytes: u64,
-    /// Their headers, bytes.
-    pub header_bytes: u64,
-}
-
-impl Volume {
-    /// All their bytes, headers included.
-    #[must_use]
-    pub fn bytes(self) -> u64 {
-        self.payload_bytes + self.header_bytes
-    }
-}
-
-/// Traffic of one robot while in one role, on one topic.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TrafficRow {
-    /// The robot.
-    pub robot: ActorId,
-    /// Its role then, an index into the protocol's roles.
-    pub role: u8,
-    /// The topic, an index into the protocol's topics.
-    pub topic: u8,
-    /// What it sent, a frame counted once however many robots hear it.
-    pub sent: Volume,
-    /// What reached it.
-    pub received: Volume,
-    /// The part of it that told it nothing new, as far as the protocol says.
-    pub duplicate: Volume,
-    /// What was meant for it and lost, by cause in the order of [`LossCause::ALL`].
-    pub lost: [Volume; LossCause::ALL.len()],
 }
 
 /// The swarm's graph at one instant: robots within range of each other.

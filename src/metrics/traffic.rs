@@ -4,7 +4,7 @@ use crate::engine::{ActorId, prefetch, prefetch_all};
 use crate::protocol::{MessageSize, Role, Topic};
 use crate::radio::LossCause;
 
-use super::record::{TrafficRow, Volume};
+use super::volume::{TrafficRow, Volume};
 
 /// Bytes that messages carry beside their payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

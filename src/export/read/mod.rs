@@ -2,17 +2,20 @@
 //! were written from.
 
 mod failures;
+mod fill;
 mod records;
 mod swarm;
 mod table;
 mod traffic;
+mod trials;
 
 use std::collections::BTreeMap;
 
 pub use records::NameLists;
 
 use crate::metrics::TrialRecord;
-use records::{OPTIONAL as MAYBE, Records, TABLES};
+use fill::{OPTIONAL as MAYBE, TABLES};
+use records::Records;
 use table::Table;
 
 /// Names of the tables that are read.

@@ -29,6 +29,7 @@
 //! the statuses: half-way between the last that was sent out of range and the first that was not.
 
 mod log;
+mod pair;
 mod range;
 mod record;
 mod score;

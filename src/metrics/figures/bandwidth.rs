@@ -2,8 +2,8 @@
 
 use super::figure::Better;
 use super::registry::Registry;
-use crate::metrics::record::TrafficRow;
 use crate::metrics::unit::DIMENSIONLESS;
+use crate::metrics::volume::TrafficRow;
 use crate::statistics::{Estimator, gini, mean, quantile};
 
 /// Bytes of a row of traffic.

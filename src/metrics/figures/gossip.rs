@@ -3,8 +3,9 @@
 use super::figure::Better;
 use super::registry::Registry;
 use crate::engine::SimTime;
-use crate::metrics::record::{TrafficRow, TrialRecord};
+use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::DIMENSIONLESS;
+use crate::metrics::volume::TrafficRow;
 use crate::statistics::{Estimator, Part};
 
 pub(super) fn declare(registry: &mut Registry, topics: &[&str]) {

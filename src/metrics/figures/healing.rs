@@ -3,7 +3,8 @@
 use super::figure::Better;
 use super::registry::Registry;
 use crate::engine::SimTime;
-use crate::metrics::record::{HealingEpisode, TrialRecord};
+use crate::metrics::episode::HealingEpisode;
+use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::DIMENSIONLESS;
 use crate::statistics::{Estimator, Observation};
 

@@ -3,8 +3,9 @@
 use super::figure::Better;
 use super::registry::Registry;
 use crate::engine::Span;
-use crate::metrics::record::{TopicFates, TrialRecord};
+use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS};
+use crate::metrics::volume::TopicFates;
 use crate::radio::LossCause;
 use crate::statistics::{Estimator, Part};
 

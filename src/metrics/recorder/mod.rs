@@ -19,11 +19,12 @@ use super::healing::Healing;
 use super::latency::LatencyHistogram;
 use super::mission::{Mission, Scene};
 use super::noted::Notes;
-use super::record::{ConnectivitySample, Outcome, RobotState, TopicFates, TrafficRow, TrialRecord};
+use super::record::{ConnectivitySample, Outcome, RobotState, TrialRecord};
 use super::reports::Reports;
 use super::series::Series;
 use super::spread::Spread;
 use super::traffic::{HeaderBytes, Traffic};
+use super::volume::{TopicFates, TrafficRow};
 
 /// The shape of a run, known before it starts.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::metrics::record::{TrafficRow, TrialRecord, Volume};
+use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, Unit};
+use crate::metrics::volume::{TrafficRow, Volume};
 use crate::statistics::{Estimate, mean, quantile};
 
 use super::estimates::Figures;

@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::engine::SimTime;
+use crate::metrics::episode::{FaultKind, HealingEpisode};
 use crate::metrics::figures::mending;
-use crate::metrics::record::{FaultKind, HealingEpisode, TrialRecord};
+use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{SECONDS, Unit};
 use crate::statistics::{Estimate, Estimator, Observation, Part, median_survival, pseudo_values};
 

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::metrics::record::{TopicFates, TrialRecord};
+use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::Unit;
+use crate::metrics::volume::TopicFates;
 use crate::radio::LossCause;
 
 use super::quantity::Named;

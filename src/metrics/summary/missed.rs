@@ -170,7 +170,8 @@ mod tests {
     use crate::engine::{ActorId, SimTime};
     use crate::faults::Effect;
     use crate::geometry::Pose;
-    use crate::metrics::record::{FaultEpisode, FaultKind, TargetSample};
+    use crate::metrics::episode::{FaultEpisode, FaultKind};
+    use crate::metrics::record::TargetSample;
     use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Recorder, RunEnd};
     use TargetState::{Away, Held, LinksShort, NoWorker};
 

@@ -5,12 +5,14 @@ use crate::engine::{ActorId, SimTime};
 use crate::faults::Effect;
 use crate::geometry::{Pose, Vec2};
 use crate::metrics::detection::{Cause, DetectionRecord, Missed, Suspicion};
-use crate::metrics::figures::{Better, Figure, Sample};
-use crate::metrics::record::{FaultEpisode, FaultKind, TopicFates};
+use crate::metrics::episode::{FaultEpisode, FaultKind};
+use crate::metrics::volume::TopicFates;
 use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RumorSpread, RunEnd};
 use crate::protocol::{MessageSize, Note, Role, Topic};
 use crate::radio::LossCause;
-use crate::statistics::Estimator;
+
+mod detection;
+mod listed;
 
 const TOPICS: [&str; 2] = ["status", "alarm"];
 const ROLES: [&str; 2] = ["free", "worker"];
@@ -244,72 +246,6 @@ fn keys_are_stable_and_in_a_stable_order() {
 }
 
 #[test]
-fn a_figure_without_a_place_of_its_own_stands_in_the_list_and_one_that_no_trial_has_does_not() {
-    let value = |summary: &Summary, key: &str| summary.figures.get(key).and_then(|listed| listed.estimate.value);
-    let seen = summary();
-    // Done at step 7 of 0.1 s, and not done in 1 s.
-    assert!((value(&seen, "completion_s").unwrap() - 0.85).abs() < 1e-12);
-    assert_eq!(seen.figures.get("completion_s").unwrap().cut_off, Some(1));
-    // One in range of each other in both samples, and in one of two.
-    assert_eq!(value(&seen, "neighbours"), Some(0.75));
-
-    let mut still = trial(0, 8);
-    still.outcome = Outcome::NoMission;
-    still.connectivity.clear();
-    let none = Summary::of("still", &TOPICS, &ROLES, &[still]);
-    assert!(none.figures.is_empty());
-    assert!(serde_json::to_value(&none).unwrap().get("figures").is_none());
-}
-
-/// A figure from outside: how much less than nothing there is of it.
-fn from_outside(registry: &mut Registry) {
-    let figure = Figure {
-        key: "chill".to_owned(),
-        name: "degrees of chill".to_owned(),
-        unit: "K".into(),
-        better: Better::Lower,
-        is_ratio: false,
-        estimator: Estimator::Mean,
-    };
-    registry.add_figure(figure, |record| Sample::plain(Some(-f64::from(record.trial))));
-}
-
-#[test]
-fn a_figure_from_outside_is_read_estimated_and_summarised_as_those_of_desim_are() {
-    let mut registry = Registry::of(&TOPICS);
-    let shipped = registry.figures().count();
-    from_outside(&mut registry);
-    let records = [trial(0, 8), trial(1, 6), trial(2, 6)];
-    let read: Vec<_> = records
-        .iter()
-        .map(|record| registry.read(record)[shipped].value())
-        .collect();
-    assert_eq!(read, [Some(-0.0), Some(-1.0), Some(-2.0)]);
-    let summary = Summary::by(&registry, "duet", &TOPICS, &ROLES, &records);
-    let listed = summary.figures.get("chill").unwrap();
-    assert_eq!((listed.estimate.value, &*listed.unit), (Some(-1.0), "K"));
-    assert_eq!(
-        Summary {
-            figures: Named::default(),
-            ..summary
-        },
-        Summary {
-            figures: Named::default(),
-            ..Summary::of("duet", &TOPICS, &ROLES, &records)
-        },
-        "it touches no other"
-    );
-}
-
-#[test]
-#[should_panic(expected = "two figures have the key chill")]
-fn a_key_that_is_taken_is_a_mistake_of_the_program() {
-    let mut registry = Registry::of(&TOPICS);
-    from_outside(&mut registry);
-    from_outside(&mut registry);
-}
-
-#[test]
 fn the_digest_depends_on_every_trial_and_their_order() {
     let (a, b) = (trial(0, 8), trial(1, 8));
     let digest = |records: &[TrialRecord]| Summary::of("duet", &TOPICS, &ROLES, records).digest;
@@ -367,73 +303,6 @@ fn a_lossless_radio_delivers_everything_however_much_is_under_way_and_a_deaf_rec
         Some(0.75),
         "of what came as far as its receiver; the rest will fare alike"
     );
-}
-
-#[test]
-fn mistakes_that_were_cut_off_count_as_having_lasted_longer() {
-    let lasted = |duration: f64, cut_off| Suspicion {
-        observer: ActorId(1),
-        subject: ActorId(0),
-        at: SimTime::from_secs(5.0),
-        heard: SimTime::from_secs(1.0),
-        sequence: 3,
-        until: None,
-        subject_down: false,
-        cause: Cause::Lost(LossCause::Channel),
-        missed: Missed::default(),
-        duration: Some(Span::from_secs(duration)),
-        cut_off,
-    };
-    let mut records = [trial(0, 8), trial(1, 6)];
-    records[0].detection.suspicions = vec![lasted(1.0, false), lasted(2.0, true)];
-    records[1].detection.suspicions = vec![lasted(4.0, false), lasted(5.0, true)];
-    let found = Summary::of("duet", &TOPICS, &ROLES, &records)
-        .detection
-        .mistake_duration_s;
-    // S is 3/4 from 1 s and 3/8 from 4 s on, to 5 s: 1 + 3 · 3/4 + 1 · 3/8.
-    assert!((found.estimate.value.unwrap() - 3.625).abs() < 1e-12);
-    assert_eq!((found.cut_off, found.restricted_to), (2, Some(5.0)));
-}
-
-#[test]
-fn detection_figures_are_ratios_of_sums_over_trials() {
-    let mistake = |duration: f64| Suspicion {
-        observer: ActorId(1),
-        subject: ActorId(0),
-        at: SimTime::from_secs(5.0),
-        heard: SimTime::from_secs(1.0),
-        sequence: 3,
-        until: None,
-        subject_down: false,
-        cause: Cause::Lost(LossCause::Channel),
-        missed: Missed::default(),
-        duration: Some(Span::from_secs(duration)),
-        cut_off: false,
-    };
-    let mut records = [trial(0, 8), trial(1, 6)];
-    records[0].detection = DetectionRecord {
-        pairs: 2,
-        monitored_s: 100.0,
-        mistaken_s: 4.0,
-        suspicions: vec![mistake(1.0), mistake(3.0)],
-        failures: Vec::new(),
-    };
-    records[1].detection.monitored_s = 60.0;
-    let detection = Summary::of("duet", &TOPICS, &ROLES, &records).detection;
-    assert_eq!((detection.suspicions.value, detection.mistakes.value), (2, 2));
-    let value = |measured: &Measured| measured.estimate.value;
-    let lasted = |lasted: &Lasted| lasted.estimate.value;
-    assert_eq!(
-        value(&detection.mistake_recurrence_s),
-        Some(80.0),
-        "a trial without a mistake counts too"
-    );
-    assert_eq!(value(&detection.mistake_rate_hz), Some(1.0 / 80.0));
-    assert_eq!(lasted(&detection.mistake_duration_s), Some(2.0));
-    assert_eq!(value(&detection.query_accuracy), Some(1.0 - 4.0 / 160.0));
-    assert_eq!(lasted(&detection.detection_time_s), None, "nobody failed");
-    let [low, high] = detection.query_accuracy.estimate.ci95;
-    assert!(low < Some(0.975) && high > Some(0.975) && detection.query_accuracy.estimate.n == 2);
 }
 
 #[test]

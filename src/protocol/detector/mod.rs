@@ -8,6 +8,7 @@ mod config;
 mod expectation;
 mod nfd_s;
 mod phi;
+mod sign;
 mod swim;
 mod timeout;
 mod watch;
@@ -16,75 +17,21 @@ pub use config::{Circumstances, DetectorConfig};
 pub use expectation::{Link, Quality, nfd_s_quality};
 pub use nfd_s::NfdSConfig;
 pub use phi::{DialectConfig, DialectSetting, PhiAccrualConfig};
+pub use sign::{Carried, Monitored, Sign, TIMER};
 pub use swim::{Call, Claim, News, Probe, SwimConfig};
 
 use std::borrow::Borrow;
-use std::convert::Infallible;
-use std::rc::Rc;
 
 use rand_philox::Philox;
 
 use super::control::Phases;
-use super::{Output, Reception, TimerId};
+use super::{Output, Reception};
 use crate::engine::{ActorId, SimTime};
 use nfd_s::NfdS;
 use phi::Phi;
 use swim::Swim;
 use timeout::Timeout;
 use watch::Watch;
-
-/// The one timer that a detector sets: a protocol that runs one keeps it free.
-pub const TIMER: TimerId = TimerId(0);
-
-/// A message of a protocol whose robots run a failure detector.
-pub trait Monitored {
-    /// What it is to the detector.
-    fn sign(&self) -> Sign<'_>;
-
-    /// A message that carries what the detector says.
-    fn probe(probe: Probe) -> Self;
-}
-
-/// How a message carries what a detector says. Protocols that are measured for their speed have messages without that, for
-/// scenarios whose detector says nothing: `Infallible` carries nothing and takes no room.
-pub trait Carried: Clone + std::fmt::Debug + 'static {
-    /// Carries `probe`, if that can be.
-    fn of(probe: Probe) -> Option<Self>;
-
-    /// What it carries.
-    fn probe(&self) -> &Probe;
-}
-
-impl Carried for Rc<Probe> {
-    fn of(probe: Probe) -> Option<Self> {
-        Some(Self::new(probe))
-    }
-
-    fn probe(&self) -> &Probe {
-        self
-    }
-}
-
-impl Carried for Infallible {
-    fn of(_: Probe) -> Option<Self> {
-        None
-    }
-
-    fn probe(&self) -> &Probe {
-        match *self {}
-    }
-}
-
-/// What a message is to a failure detector.
-#[derive(Clone, Copy, Debug)]
-pub enum Sign<'a> {
-    /// A status: a sign that its sender is alive, repeated as long as it is.
-    Status,
-    /// What another robot's detector says.
-    Probe(&'a Probe),
-    /// Nothing that concerns it.
-    Other,
-}
 
 /// One robot's failure detector: it notes whom the robot watches, suspects (at the exact instant) and trusts.
 #[derive(Debug)]

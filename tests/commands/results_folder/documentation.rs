@@ -4,6 +4,7 @@ use std::fs::File;
 use std::path::Path;
 
 use desim::export::Tables;
+use desim::metrics::figures::Registry;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::Type;
@@ -153,5 +154,19 @@ fn every_file_of_a_finished_folder_is_in_the_readmes_list() {
     let tables = Tables::FILES.into_iter().chain(Tables::OPTIONAL);
     for table in tables.chain(["summary.json", "manifest.json"]) {
         assert!(README.contains(&format!("| `{table}` |")), "{table}");
+    }
+}
+
+#[test]
+fn the_readme_names_every_figure_of_the_general_list() {
+    let registry = Registry::of(&["status"]);
+    let listed = registry.listed(&[]);
+    assert!(listed.len() >= 2);
+    for (figure, _, _) in listed {
+        assert!(
+            README.contains(&format!("`{}`", figure.key)),
+            "{} is not documented",
+            figure.key
+        );
     }
 }

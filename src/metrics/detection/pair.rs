@@ -1,0 +1,89 @@
+//! An observer and a subject that it watches, and what is counted of all of them.
+
+use std::num::NonZeroU32;
+
+use crate::engine::{ActorId, SimTime};
+
+use super::record::{FailureOutcome, ObservedFailure, Suspicion, Verdict};
+
+/// What has been counted.
+#[derive(Debug, Default)]
+pub struct Tally {
+    pub monitored_nanos: u128,
+    pub mistaken_nanos: u128,
+    pub suspicions: Vec<Suspicion>,
+    pub failures: Vec<ObservedFailure>,
+}
+
+/// A subject, at its observer.
+#[derive(Debug)]
+pub struct Pair {
+    pub subject: ActorId,
+    /// Since when the pair is monitored, in one stretch and with one belief, or from when on it will be; `NEVER` while it is not.
+    /// There is a pair for every link of the swarm, so it is kept small.
+    pub since: SimTime,
+    /// When the two have been in range for as long as the detector waits; `NEVER` while they are not in range.
+    pub settled: SimTime,
+    /// The suspicion in force.
+    pub suspicion: Option<Place>,
+    /// The failure that is to be detected.
+    pub failure: Option<Place>,
+    /// Whether the suspicion is, or from `since` on will be, one of a robot that is well and within range.
+    pub mistaken: bool,
+}
+
+/// A place in a list, counted from 1: so `None` takes no room.
+pub type Place = NonZeroU32;
+
+/// The place of what is next added to `list`.
+pub fn next_place<T>(list: &[T]) -> Place {
+    Place::MIN.saturating_add(list.len() as u32)
+}
+
+pub fn at<T>(list: &mut [T], place: Place) -> &mut T {
+    &mut list[place.get() as usize - 1]
+}
+
+impl Pair {
+    /// Counts the stretch that ends at `now`.
+    pub fn settle(&mut self, now: SimTime, tally: &mut Tally) {
+        // A pair that is not monitored yet, or no longer, began to be so no time ago.
+        let nanos = u128::from(now.since(std::mem::replace(&mut self.since, SimTime::NEVER)).as_nanos());
+        tally.monitored_nanos += nanos;
+        tally.mistaken_nanos += if self.mistaken { nanos } else { 0 };
+    }
+
+    /// Begins a stretch at `now`, or when the two will have been in range for long enough, if both robots are `able` and the belief
+    /// says something of the detector's quality.
+    pub fn resume(&mut self, now: SimTime, able: bool) {
+        let tells = self.suspicion.is_none() || self.mistaken;
+        self.since = if able && tells {
+            now.max(self.settled)
+        } else {
+            SimTime::NEVER
+        };
+    }
+
+    /// A mistake, if there is one, ends at `now`: in trust, or cut off.
+    pub fn end_mistake(&mut self, now: SimTime, cut_off: bool, tally: &mut Tally) {
+        if let (true, Some(suspicion)) = (std::mem::take(&mut self.mistaken), self.suspicion) {
+            let suspicion = at(&mut tally.suspicions, suspicion);
+            // Of a suspicion that became a mistake in range, or again, it is not known how long one lasts.
+            if suspicion.verdict() == Verdict::Mistake && suspicion.duration.is_none() {
+                suspicion.duration = Some(now.since(suspicion.at));
+                suspicion.cut_off = cut_off;
+            }
+        }
+    }
+
+    /// The failure ends at `now`: it was detected if the subject is suspected, else the `outcome` is another.
+    pub fn resolve(&mut self, now: SimTime, outcome: FailureOutcome, tally: &mut Tally) {
+        if let Some(failure) = self.failure.take() {
+            let failure = at(&mut tally.failures, failure);
+            let suspicion = self.suspicion.map(|suspicion| &*at(&mut tally.suspicions, suspicion));
+            let detected = suspicion.map(|suspicion| suspicion.at.since(failure.at));
+            failure.outcome = detected.map_or(outcome, FailureOutcome::Detected);
+            failure.watched = detected.unwrap_or_else(|| now.since(failure.at));
+        }
+    }
+}
