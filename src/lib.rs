@@ -120,6 +120,7 @@ pub mod report;
 pub mod runs;
 pub mod scenario;
 pub mod simulation;
+pub mod spool;
 pub mod statistics;
 pub mod testing;
 pub mod text;

@@ -1,13 +1,14 @@
 //! Finished trials on disk, until all of an experiment's are there.
 
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use xxhash_rust::xxh3::xxh3_128;
+use xxhash_rust::xxh3::Xxh3;
 
-use crate::metrics::TrialRecord;
+use crate::metrics::{Lists, TrialRecord};
+use crate::spool::{Scratch, Section, Shape};
 use crate::text::shown;
 
 /// A trial and what it took.
@@ -21,9 +22,9 @@ pub struct FinishedTrial {
 
 /// A folder with one file a finished trial.
 ///
-/// A file is a line of JSON whose numbers read back bit for bit, and a line with the XXH3-128 hash of that, written under another
-/// name and renamed: whatever kills the process, a file that is there is whole, and one that has changed since is noticed. The folder is locked while it is open, so that two processes never run
-/// the same experiment.
+/// A file is a line of JSON whose numbers read back bit for bit, then the entries of the record's long lists, then a line with the XXH3-128 hash
+/// of both. It is written under another name and renamed: whatever kills the process, a file that is there is whole, and one that has changed
+/// since is noticed. The folder is locked while it is open, so that two processes never run the same experiment.
 #[derive(Debug)]
 pub struct Parts {
     dir: PathBuf,
@@ -96,14 +97,20 @@ impl Parts {
             .collect()
     }
 
+    /// Where trials that are under way keep what would fill the memory: in files without names, which leave no trace.
+    #[must_use]
+    pub fn scratch(&self) -> Scratch {
+        Scratch::in_folder(&self.dir)
+    }
+
     /// Keeps a finished trial.
     ///
     /// # Errors
     /// If the file system refuses.
-    pub fn save(&self, part: &FinishedTrial) -> Result<(), PartsError> {
+    pub fn save(&self, part: &mut FinishedTrial) -> Result<(), PartsError> {
         let path = self.path(part.record.trial);
         let unfinished = path.with_extension("writing");
-        write_json(&unfinished, part).map_err(failed("write", &unfinished))?;
+        write(&unfinished, part).map_err(failed("write", &unfinished))?;
         fs::rename(&unfinished, &path).map_err(failed("write", &path))
     }
 
@@ -120,16 +127,8 @@ impl Parts {
         if path.exists() && !path.is_file() {
             return Err(damaged("it is no file with an end".to_owned()));
         }
-        let bytes = fs::read(&path).map_err(failed("read", &path))?;
-        let line = bytes
-            .iter()
-            .position(|byte| *byte == b'\n')
-            .map_or(bytes.len(), |end| end + 1);
-        let (json, hash) = bytes.split_at(line);
-        if hash != hash_line(json) {
-            return Err(damaged("it does not fit its hash".to_owned()));
-        }
-        let part: FinishedTrial = serde_json::from_slice(json).map_err(|error| damaged(error.to_string()))?;
+        let file = File::open(&path).map_err(failed("read", &path))?;
+        let part = read(file).map_err(|error| damaged(error.to_string()))?;
         if part.record.trial == trial {
             Ok(part)
         } else {
@@ -138,21 +137,106 @@ impl Parts {
     }
 
     fn path(&self, trial: u32) -> PathBuf {
-        self.dir.join(format!("{trial:06}.json"))
+        self.dir.join(format!("{trial:06}.trial"))
     }
 }
 
-fn write_json(path: &Path, part: &FinishedTrial) -> io::Result<()> {
-    let mut bytes = serde_json::to_vec(part)?;
-    bytes.push(b'\n');
-    let hash = hash_line(&bytes);
-    bytes.extend(hash);
-    File::create(path)?.write_all(&bytes)
+/// The first line of a file.
+#[derive(Serialize, Deserialize)]
+struct Head<P> {
+    /// The trial without its long lists.
+    part: P,
+    /// How long these are, in the order in which their entries follow.
+    lists: Vec<Shape>,
 }
 
-/// The line that follows on `json`.
-fn hash_line(json: &[u8]) -> Vec<u8> {
-    format!("{:032x}\n", xxh3_128(json)).into_bytes()
+fn write(path: &Path, part: &mut FinishedTrial) -> io::Result<()> {
+    let mut lists = Lists::default();
+    part.record.exchange(&mut lists);
+    let written = write_apart(path, part, &mut lists);
+    part.record.exchange(&mut lists);
+    written
+}
+
+fn write_apart(path: &Path, part: &FinishedTrial, lists: &mut Lists) -> io::Result<()> {
+    let mut file = Hashing::new(BufWriter::new(File::create(path)?));
+    let lists = lists.all();
+    let head = Head {
+        part,
+        lists: lists.iter().map(|list| list.shape()).collect(),
+    };
+    serde_json::to_writer(&mut file, &head)?;
+    file.write_all(b"\n")?;
+    for list in lists {
+        list.write_to(&mut file)?;
+    }
+    let Hashing { mut inner, hash } = file;
+    inner.write_all(&hash_line(&hash))?;
+    inner.flush()
+}
+
+fn read(mut file: File) -> io::Result<FinishedTrial> {
+    let length = file.metadata()?.len();
+    let Some(end) = length.checked_sub(HASH_LINE) else {
+        return Err(io::Error::other("it has no hash"));
+    };
+    let mut whole = Hashing::new(io::sink());
+    io::copy(&mut (&mut file).take(end), &mut whole)?;
+    let mut kept = Vec::new();
+    file.read_to_end(&mut kept)?;
+    if kept != hash_line(&whole.hash) {
+        return Err(io::Error::other("it does not fit its hash"));
+    }
+    file.rewind()?;
+    let mut line = Vec::new();
+    BufReader::new(&file).read_until(b'\n', &mut line)?;
+    let Head {
+        mut part,
+        lists: shapes,
+    } = serde_json::from_slice::<Head<FinishedTrial>>(&line)?;
+    let mut lists = Lists::default();
+    let mut section = Section::of(file, line.len() as u64);
+    for (list, shape) in lists.all().into_iter().zip(shapes) {
+        list.restore(shape, section.clone())?;
+        section = section.after(shape.bytes());
+    }
+    part.record.exchange(&mut lists);
+    Ok(part)
+}
+
+/// Bytes of [`hash_line`].
+const HASH_LINE: u64 = 33;
+
+/// The last line of a file.
+fn hash_line(hash: &Xxh3) -> Vec<u8> {
+    format!("{:032x}\n", hash.digest128()).into_bytes()
+}
+
+/// Hashes what goes through it.
+struct Hashing<W> {
+    inner: W,
+    hash: Xxh3,
+}
+
+impl<W> Hashing<W> {
+    fn new(inner: W) -> Self {
+        Self {
+            inner,
+            hash: Xxh3::new(),
+        }
+    }
+}
+
+impl<W: Write> Write for Hashing<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.inner.write(bytes)?;
+        self.hash.update(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
 }
 
 fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> PartsError {

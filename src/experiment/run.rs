@@ -86,11 +86,11 @@ impl Pool<'_> {
         let run = |(experiment, trial): (usize, u32)| {
             let start = Instant::now();
             let record = run(experiment, trial).map_err(|source| ExperimentError::Trial { trial, source })?;
-            let part = FinishedTrial {
+            let mut part = FinishedTrial {
                 wall_s: start.elapsed().as_secs_f64(),
                 record,
             };
-            experiments[experiment].parts.save(&part)?;
+            experiments[experiment].parts.save(&mut part)?;
             tracing::info!(
                 experiment,
                 trial,

@@ -8,6 +8,7 @@ use crate::metrics::TrialRecord;
 use crate::motion::deploy;
 use crate::scenario::Scenario;
 use crate::simulation::{DriverKind, Setup};
+use crate::spool::Scratch;
 
 /// Runs trial number `trial` of `scenario`, until `stop` is cancelled.
 ///
@@ -19,7 +20,25 @@ pub fn run_trial(
     driver: DriverKind,
     stop: &CancellationToken,
 ) -> Result<TrialRecord, TrialError> {
-    run(scenario, trial, None, driver, stop)
+    run_trial_in(&Scratch::default(), scenario, trial, driver, stop)
+}
+
+/// Runs a trial as [`run_trial`] does, and keeps in `scratch` what of its record would fill the memory.
+///
+/// # Errors
+/// As [`run_trial`].
+pub fn run_trial_in(
+    scratch: &Scratch,
+    scenario: &Scenario,
+    trial: u32,
+    driver: DriverKind,
+    stop: &CancellationToken,
+) -> Result<TrialRecord, TrialError> {
+    let setup = Setup {
+        scratch: scratch.clone(),
+        ..setup(scenario, trial)
+    };
+    run(setup, scenario, driver, stop)
 }
 
 /// Runs a trial as [`run_trial`] does, and follows every status of `robot` into [`TrialRecord::trace`]. Whoever is
@@ -33,20 +52,19 @@ pub fn trace_trial(
     robot: ActorId,
     stop: &CancellationToken,
 ) -> Result<TrialRecord, TrialError> {
-    run(scenario, trial, Some(robot), DriverKind::Inline, stop)
+    let setup = Setup {
+        trace: Some(robot),
+        ..setup(scenario, trial)
+    };
+    run(setup, scenario, DriverKind::Inline, stop)
 }
 
 fn run(
+    setup: Setup,
     scenario: &Scenario,
-    trial: u32,
-    trace: Option<ActorId>,
     driver: DriverKind,
     stop: &CancellationToken,
 ) -> Result<TrialRecord, TrialError> {
-    let setup = Setup {
-        trace,
-        ..setup(scenario, trial)
-    };
     let streams = setup.streams();
     let swarm = &scenario.swarm;
     let body_radius = scenario.motion.body_radius.get();
@@ -83,5 +101,6 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         mission: None,
         rumors: 0,
         completion: scenario.completion(),
+        scratch: Scratch::default(),
     }
 }

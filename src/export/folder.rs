@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::Tables;
 use super::files::{MANIFEST, PAGE, PICTURES, SUMMARY};
-use super::held::{FileEntry, held, measure, sealed, unseal};
+use super::held::{FileEntry, document, held, measure, sealed, unseal};
 use super::manifest::Manifest;
 use super::place::{FolderError, Place, WriteError, failed, gone};
 use crate::experiment::Parts;
@@ -77,7 +77,7 @@ impl Folder {
     ///
     /// # Errors
     /// The file that is not the one that was written, or that is there though none of that name was.
-    pub fn held(&self, manifest: &Manifest, wanted: &[&str]) -> Result<BTreeMap<String, Vec<u8>>, FolderError> {
+    pub fn held(&self, manifest: &Manifest, wanted: &[&str]) -> Result<BTreeMap<String, File>, FolderError> {
         // Whoever reads the folder as a whole would take such a table for one of its own.
         let is_stranger = |name: &String| name.ends_with(".parquet") && !manifest.files.contains_key(name);
         if let Some(name) = self.place.names()?.into_iter().find(is_stranger) {
@@ -91,11 +91,17 @@ impl Folder {
     /// # Errors
     /// As [`held`](Self::held).
     pub fn summary(&self, manifest: &Manifest) -> Result<Summary, FolderError> {
-        let files = self.held(manifest, &[SUMMARY])?;
+        let mut files = self.held(manifest, &[SUMMARY])?;
         hold_page(self.path(), manifest.files.get(PAGE))?;
-        let summary = files.get(SUMMARY).map(Vec::as_slice).unwrap_or_default();
-        serde_json::from_slice(summary)
-            .map_err(|error| FolderError::version(&self.path().join(SUMMARY), &error, &manifest.version))
+        self.summary_in(&mut files, manifest)
+    }
+
+    /// The summary among the `files` of these results.
+    ///
+    /// # Errors
+    /// If it is none.
+    pub fn summary_in(&self, files: &mut BTreeMap<String, File>, manifest: &Manifest) -> Result<Summary, FolderError> {
+        document(self.path(), SUMMARY, files, &manifest.version)
     }
 
     /// Puts a manifest in place. Like every file, it passes through [`trials`](Self::trials), which must be there.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, Read, Seek};
 use std::path::{Component, Path};
 
 use serde::de::DeserializeOwned;
@@ -91,13 +91,13 @@ fn unsealed(document: &[u8]) -> String {
     }
 }
 
-/// Holds `files` of `dir` against what is known of them, all lengths before any content, and answers the contents of those
-/// that are `wanted`.
+/// Holds `files` of `dir` against what is known of them, all lengths before any content, and answers those that are `wanted`, open at
+/// their beginning: they may be larger than the memory.
 pub fn held(
     dir: &Path,
     files: &BTreeMap<String, FileEntry>,
     wanted: &[&str],
-) -> Result<BTreeMap<String, Vec<u8>>, FolderError> {
+) -> Result<BTreeMap<String, File>, FolderError> {
     if let Some(name) = wanted.iter().find(|name| !files.contains_key(**name)) {
         return Err(FolderError::Altered {
             path: dir.join(name),
@@ -118,14 +118,15 @@ pub fn held(
     let mut kept = BTreeMap::new();
     for (name, entry) in files {
         let path = dir.join(name);
-        let there = if wanted.contains(&name.as_str()) {
-            let content = read(&path, entry.bytes)?;
-            let there = FileEntry::of(&content);
-            kept.insert(name.clone(), content);
-            there
-        } else {
-            measure(&path).map_err(failed("read", &path))?
-        };
+        let measured = File::open(&path).and_then(|mut file| {
+            let there = measure_open(&mut file)?;
+            file.rewind()?;
+            Ok((there, file))
+        });
+        let (there, file) = measured.map_err(failed("read", &path))?;
+        if wanted.contains(&name.as_str()) {
+            kept.insert(name.clone(), file);
+        }
         if there != *entry {
             let wrong = wrong_length(there.bytes, entry.bytes);
             let wrong = wrong.unwrap_or_else(|| {
@@ -135,6 +136,21 @@ pub fn held(
         }
     }
     Ok(kept)
+}
+
+/// The value in the JSON document `name` of `dir`, one of `files`, which desim of this `version` wrote.
+pub fn document<T: DeserializeOwned>(
+    dir: &Path,
+    name: &str,
+    files: &mut BTreeMap<String, File>,
+    version: &str,
+) -> Result<T, FolderError> {
+    let path = dir.join(name);
+    let mut document = String::new();
+    if let Some(mut file) = files.remove(name) {
+        file.read_to_string(&mut document).map_err(failed("read", &path))?;
+    }
+    serde_json::from_str(&document).map_err(|error| FolderError::version(&path, &error, version))
 }
 
 /// Whether a file of this name is in the folder or below: desim writes no other, and whoever did must not lead out of it.
@@ -179,7 +195,10 @@ fn read(path: &Path, length: u64) -> Result<Vec<u8>, FolderError> {
 
 /// Length and hash of a file, however large.
 pub fn measure(path: &Path) -> io::Result<FileEntry> {
-    let mut file = File::open(path)?;
+    measure_open(&mut File::open(path)?)
+}
+
+fn measure_open(file: &mut File) -> io::Result<FileEntry> {
     let (mut hash, mut bytes, mut chunk) = (Xxh3::new(), 0, vec![0; 1 << 16]);
     loop {
         let read = file.read(&mut chunk)?;

@@ -1,6 +1,7 @@
 //! In place of reading tables, in a build without the `parquet` feature: nothing is read.
 
 use std::collections::BTreeMap;
+use std::fs::File;
 
 use crate::metrics::TrialRecord;
 
@@ -23,6 +24,6 @@ pub const OPTIONAL: [&str; 0] = [];
 ///
 /// # Errors
 /// Always.
-pub fn records(_: &mut BTreeMap<String, Vec<u8>>, _: &NameLists) -> Result<Vec<TrialRecord>, (&'static str, String)> {
+pub fn records(_: &mut BTreeMap<String, File>, _: &NameLists) -> Result<Vec<TrialRecord>, (&'static str, String)> {
     Err((READ[0], "this desim was built without Parquet".to_owned()))
 }

@@ -73,8 +73,7 @@ impl Results {
         let wanted: Vec<&str> = read::READ.into_iter().chain([SUMMARY]).chain(optional).collect();
         let mut files = folder.held(&manifest, &wanted)?;
         let version = |file: &str, reason: String| FolderError::version(&dir.join(file), &reason, &manifest.version);
-        let summary = files.remove(SUMMARY).unwrap_or_default();
-        let summary: Summary = serde_json::from_slice(&summary).map_err(|error| version(SUMMARY, error.to_string()))?;
+        let summary = folder.summary_in(&mut files, &manifest)?;
         let names = names(&summary);
         let records = read::records(&mut files, &names).map_err(|(file, wrong)| version(file, wrong))?;
         let scenario = scenario(dir, &manifest).map_err(|reason| version(MANIFEST, reason))?;

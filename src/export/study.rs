@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::files::{MANIFEST, PAGE};
 use super::folder::{Contents, Folder, hold_page};
-use super::held::{FileEntry, held, sealed, unseal};
+use super::held::{FileEntry, document, held, sealed, unseal};
 use super::manifest::{Difference, Manifest, compare, made_by};
 use super::picture;
 use super::place::{FolderError, Place, failed, json};
@@ -180,12 +180,8 @@ impl StudyFolder {
         if !manifest.files.contains_key(COMPARISON) {
             return Ok(None);
         }
-        let files = held(self.path(), &manifest.comparing(), &[COMPARISON])?;
-        let comparison = files.get(COMPARISON).map(Vec::as_slice).unwrap_or_default();
-        let comparison = serde_json::from_slice(comparison);
-        comparison
-            .map(Some)
-            .map_err(|error| FolderError::version(&self.path().join(COMPARISON), &error, &manifest.version))
+        let mut files = held(self.path(), &manifest.comparing(), &[COMPARISON])?;
+        document(self.path(), COMPARISON, &mut files, &manifest.version).map(Some)
     }
 
     /// The comparison of a finished study, all of whose files are those that `manifest` describes, the results of every setting too;

@@ -10,6 +10,7 @@ use super::tables::Tables;
 use crate::experiment::{FinishedTrial, Parts};
 use crate::metrics::{Summary, TrialRecord};
 use crate::scenario::Scenario;
+use crate::spool::Spool;
 
 /// Of which trials to draw pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,7 +56,7 @@ pub fn write(
         manifest.trials.push(entry(&part));
         // Paths are the bulk of a record, and the summary has no use for them.
         records.push(TrialRecord {
-            trajectories: Vec::new(),
+            trajectories: Spool::default(),
             ..part.record
         });
     }

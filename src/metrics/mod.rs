@@ -33,7 +33,7 @@ pub use mission::{Mission, MissionTarget};
 pub use noted::{Amount, Noted, Values};
 pub use noted_figure::NotedFigure;
 pub use record::{
-    ConnectivitySample, Outcome, RobotBytes, RobotState, SeriesEntry, TargetSample, TargetState, TrialRecord,
+    ConnectivitySample, Lists, Outcome, RobotBytes, RobotState, SeriesEntry, TargetSample, TargetState, TrialRecord,
 };
 pub use recorder::{Layout, Recorder, RunEnd};
 pub use spread::RumorSpread;

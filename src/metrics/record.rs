@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Pose;
+use crate::spool::{Entry, Spool, Spooled, entry};
 
-use super::detection::{DetectionRecord, StatusTrace};
+use super::detection::{DetectionRecord, ObservedFailure, StatusTrace, Suspicion};
 use super::episode::{FaultEpisode, HealingEpisode};
 use super::latency::LatencyHistogram;
 use super::noted::Noted;
@@ -49,13 +50,13 @@ pub struct TrialRecord {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub noted: Vec<Noted>,
     /// Connectivity at each sample time.
-    pub connectivity: Vec<ConnectivitySample>,
+    pub connectivity: Spool<ConnectivitySample>,
     /// Traffic over time, in order of time.
-    pub series: Vec<SeriesEntry>,
+    pub series: Spool<SeriesEntry>,
     /// Robots at the end, in order of ids.
     pub robots: Vec<RobotState>,
     /// Positions at each sample time (metres, robot by robot), as f32: for pictures.
-    pub trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
+    pub trajectories: Spool<(SimTime, Vec<[f32; 2]>)>,
     /// The statuses of the robot that the run was asked to follow, if it was; kept nowhere.
     #[serde(skip)]
     pub trace: Option<StatusTrace>,
@@ -67,7 +68,7 @@ impl TrialRecord {
     pub fn lambda2_min(&self) -> Option<f64> {
         self.connectivity
             .iter()
-            .filter(|sample| sample.has_two())
+            .filter(ConnectivitySample::has_two)
             .map(|sample| sample.lambda2)
             .min_by(f64::total_cmp)
     }
@@ -75,9 +76,7 @@ impl TrialRecord {
     /// Share of the samples that find the live robots in one piece, of those that find any; `None` if none does.
     #[must_use]
     pub fn connected_share(&self) -> Option<f64> {
-        let count = |counts: fn(&ConnectivitySample) -> bool| {
-            self.connectivity.iter().filter(|sample| counts(sample)).count() as f64
-        };
+        let count = |counts: fn(&ConnectivitySample) -> bool| self.connectivity.iter().filter(counts).count() as f64;
         let any = count(|sample| sample.components > 0);
         (any > 0.0).then(|| count(|sample| sample.components == 1) / any)
     }
@@ -246,4 +245,56 @@ pub struct RobotState {
     pub parents: Vec<ActorId>,
     /// Its control steps that were due in the trial. Robots with a phase of their own may have one fewer than others.
     pub steps: u64,
+}
+
+entry! {
+    ConnectivitySample { at, lambda2, components, neighbours, roles, links, targets }
+    TargetSample { state, worker_m }
+    SeriesEntry { since, at, sent, received }
+    RobotBytes { total, min, median, max }
+}
+
+impl Entry for TargetState {
+    fn put(&self, into: &mut Vec<u8>) {
+        (*self as u8).put(into);
+    }
+
+    fn take(from: &mut &[u8]) -> Option<Self> {
+        Self::ALL.get(usize::from(u8::take(from)?)).copied()
+    }
+}
+
+/// The lists of a record that grow with simulated time.
+#[derive(Debug, Default)]
+pub struct Lists {
+    suspicions: Spool<Suspicion>,
+    failures: Spool<ObservedFailure>,
+    connectivity: Spool<ConnectivitySample>,
+    series: Spool<SeriesEntry>,
+    trajectories: Spool<(SimTime, Vec<[f32; 2]>)>,
+}
+
+impl Lists {
+    /// All of them, always in this order.
+    pub fn all(&mut self) -> [&mut dyn Spooled; 5] {
+        [
+            &mut self.suspicions,
+            &mut self.failures,
+            &mut self.connectivity,
+            &mut self.series,
+            &mut self.trajectories,
+        ]
+    }
+}
+
+impl TrialRecord {
+    /// Puts `lists` in the place of its own, which it gives.
+    pub fn exchange(&mut self, lists: &mut Lists) {
+        use std::mem::swap;
+        swap(&mut self.detection.suspicions, &mut lists.suspicions);
+        swap(&mut self.detection.failures, &mut lists.failures);
+        swap(&mut self.connectivity, &mut lists.connectivity);
+        swap(&mut self.series, &mut lists.series);
+        swap(&mut self.trajectories, &mut lists.trajectories);
+    }
 }

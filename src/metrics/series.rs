@@ -3,6 +3,7 @@
 //! The table of traffic is summed at samples alone, so the series costs a reception nothing.
 
 use crate::engine::SimTime;
+use crate::spool::{Scratch, Spool};
 
 use super::record::{RobotBytes, SeriesEntry};
 use super::traffic::{RobotTraffic, Traffic};
@@ -16,16 +17,16 @@ pub(super) struct Series {
     skipped: u32,
     /// What the table held at the last entry, or at the first sample, from which the series starts.
     last: Option<(SimTime, Vec<RobotTraffic>)>,
-    entries: Vec<SeriesEntry>,
+    entries: Spool<SeriesEntry>,
 }
 
 impl Series {
-    pub(super) fn new(every: u32) -> Self {
+    pub(super) fn new(every: u32, scratch: &Scratch) -> Self {
         Self {
             every,
             skipped: 0,
             last: None,
-            entries: Vec::new(),
+            entries: Spool::new(scratch),
         }
     }
 
@@ -42,12 +43,12 @@ impl Series {
         let present = traffic.by_robot_and_topic();
         if let Some((since, before)) = self.last.take() {
             self.entries
-                .push(entry(since, now, &before, &present, traffic.topics()));
+                .push(&entry(since, now, &before, &present, traffic.topics()));
         }
         self.last = Some((now, present));
     }
 
-    pub(super) fn into_entries(self) -> Vec<SeriesEntry> {
+    pub(super) fn into_entries(self) -> Spool<SeriesEntry> {
         self.entries
     }
 }
@@ -109,7 +110,7 @@ mod tests {
 
     #[test]
     fn an_entry_holds_what_came_since_the_sample_before_in_whatever_role() {
-        let (mut series, mut traffic) = (Series::new(1), traffic());
+        let (mut series, mut traffic) = (Series::new(1, &Scratch::default()), traffic());
         traffic.sent(ActorId(0), Topic(0), MessageSize::alone(100));
         series.sample(at(0), &traffic);
         traffic.sent(ActorId(0), Topic(0), MessageSize::alone(4));
@@ -125,6 +126,7 @@ mod tests {
             median,
             max,
         };
+        let entries: Vec<_> = entries.iter().collect();
         let [entry] = &entries[..] else {
             panic!("the first sample is where the series starts from")
         };
@@ -139,7 +141,7 @@ mod tests {
 
     #[test]
     fn entries_add_up_to_the_traffic_between_the_first_and_the_last_of_their_samples() {
-        let (mut series, mut traffic) = (Series::new(2), traffic());
+        let (mut series, mut traffic) = (Series::new(2, &Scratch::default()), traffic());
         for second in 0..8 {
             traffic.received(ActorId(second % 3), Topic(0), MessageSize::alone(second as u16));
             series.sample(at(second), &traffic);
@@ -153,9 +155,9 @@ mod tests {
 
     #[test]
     fn a_series_every_0_samples_is_none() {
-        let mut series = Series::new(0);
+        let mut series = Series::new(0, &Scratch::default());
         (0..3).for_each(|second| series.sample(at(second), &traffic()));
-        assert_eq!(series.into_entries(), []);
+        assert!(series.into_entries().is_empty());
     }
 
     #[test]

@@ -122,7 +122,7 @@ impl Explanation {
                 .filter_map(|episode| outage(trace.robot, episode))
                 .collect(),
             suspicions: suspicions
-                .map(|(number, suspicion)| explain(number, suspicion, trace))
+                .map(|(number, suspicion)| explain(number, &suspicion, trace))
                 .collect(),
         })
     }

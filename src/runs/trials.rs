@@ -5,7 +5,7 @@ use std::thread;
 
 use super::error::RunsError;
 use super::options::Options;
-use crate::experiment::{Ending, Experiment, FinishedTrial, Parts, Pool, run_trial};
+use crate::experiment::{Ending, Experiment, FinishedTrial, Parts, Pool, run_trial_in};
 use crate::scenario::Scenario;
 
 /// What whoever runs something is told.
@@ -52,7 +52,10 @@ pub(super) fn run_missing(
         jobs: threads(options.jobs),
         stop: &stop,
     };
-    let run = |place: usize, trial| run_trial(scenarios[place].0, trial, options.driver, &stop);
+    let run = |place: usize, trial| {
+        let (scenario, parts) = scenarios[place];
+        run_trial_in(&parts.scratch(), scenario, trial, options.driver, &stop)
+    };
     let trials = experiments.iter().map(|experiment| experiment.trials).sum();
     tell(Happening::Begin { kept, trials });
     let ending = pool.run(&experiments, run, |place, part| {

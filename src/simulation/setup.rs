@@ -19,6 +19,7 @@ use crate::protocol::control::{ControlConfig, Phases, Rhythm as Repeated, WakeCo
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::{CompletionConfig, Protocol, Robot, Start};
 use crate::radio::{Medium, RadioConfig};
+use crate::spool::Scratch;
 
 /// How robots are run. Both give the same results, byte for byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,6 +81,8 @@ pub struct Setup {
     pub rumors: usize,
     /// When the mission, or the spread of the rumours, is complete.
     pub completion: CompletionConfig,
+    /// Where what a record keeps of long runs has its files.
+    pub scratch: Scratch,
 }
 
 impl Setup {
@@ -251,6 +254,7 @@ impl Setup {
             status_memory: self.detector.longest_silence(circumstances) * 2,
             patience: self.detector.usual_silence(circumstances),
             status: P::STATUS,
+            scratch: self.scratch.clone(),
         }
     }
 

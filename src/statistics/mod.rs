@@ -29,7 +29,7 @@ pub use permutation::{Part, Tested, least_of_pairs, paired_permutation, ratio_of
 pub use ranks::{cliffs_delta, cliffs_delta_estimate, least_of_groups, least_of_ranks, mann_whitney, wilcoxon};
 pub use spread::{gini, quantile};
 pub use survival::{Observation, Step, log_rank, median_survival, survival_curve};
-pub use times::{Lasting, pseudo_values};
+pub use times::{Lasting, Times, pseudo_values};
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};

@@ -23,7 +23,7 @@ pub struct Observation {
 /// is absent; and where the curve comes to zero, nothing is known of its band, so that an upper end may be absent without cut-offs too.
 #[must_use]
 pub fn median_survival(observations: &[Observation]) -> Estimate {
-    let curve = survival_curve(observations);
+    let curve = survival_curve(observations.iter().copied());
     let longest = observations.iter().map(|seen| seen.time).fold(0.0, f64::max);
     let reached = (1..=curve.len()).find(|&steps| half(&curve[..steps]).is_le());
     let value = reached.map(|steps| {
@@ -102,9 +102,9 @@ pub struct Step {
 /// The Kaplan–Meier curve, a step for each time at which something happened. At a tie, what happened came before what
 /// was cut off.
 #[must_use]
-pub fn survival_curve(observations: &[Observation]) -> Vec<Step> {
-    let mut sorted = observations.to_vec();
-    sorted.sort_by(|a, b| a.time.total_cmp(&b.time));
+pub fn survival_curve(observations: impl IntoIterator<Item = Observation>) -> Vec<Step> {
+    let mut sorted: Vec<Observation> = observations.into_iter().collect();
+    sorted.sort_unstable_by(|a, b| a.time.total_cmp(&b.time));
     let mut at_risk = sorted.len() as u64;
     let mut survival = 1.0;
     let mut greenwood = 0.0;
@@ -266,7 +266,7 @@ mod tests {
             }
             a
         };
-        let curve = survival_curve(observations);
+        let curve = survival_curve(observations.iter().copied());
         let longest = observations.iter().map(|seen| seen.time).fold(0.0, f64::max);
         let (mut above, mut below) = (1_u128, 1_u128);
         for (place, step) in curve.iter().enumerate() {
@@ -313,7 +313,7 @@ mod tests {
     #[test]
     fn a_curve_and_its_band_are_those_of_lifelines() {
         // lifelines.KaplanMeierFitter().fit(times, happened): survival_function_, confidence_interval_
-        let curve = survival_curve(&observed(
+        let curve = survival_curve(observed(
             &[6, 6, 6, 7, 10, 13, 16, 22, 23],
             &[6, 9, 10, 11, 17, 19, 20, 25, 32, 32, 34, 35],
         ));

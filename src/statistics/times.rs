@@ -1,7 +1,56 @@
 //! The mean of times of which some were cut off, over trials that have several each.
 
 use super::permutation::Part;
-use super::survival::{Observation, survival_curve};
+use super::survival::Observation;
+
+/// Times of which some may have been cut off, in the order in which they were seen: there may be millions, so they are kept small.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Times(
+    /// A time that was cut off bears the sign.
+    Vec<f64>,
+);
+
+impl Times {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The times, in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Observation> + Clone {
+        self.0.iter().map(|time| Observation {
+            time: time.abs(),
+            happened: time.is_sign_positive(),
+        })
+    }
+
+    /// Shortest first.
+    fn sort(&mut self) {
+        self.0.sort_unstable_by(|a, b| a.abs().total_cmp(&b.abs()));
+    }
+}
+
+impl Extend<Observation> for Times {
+    fn extend<I: IntoIterator<Item = Observation>>(&mut self, times: I) {
+        let signed = |seen: Observation| if seen.happened { seen.time } else { -seen.time };
+        self.0.extend(times.into_iter().map(signed));
+    }
+}
+
+impl FromIterator<Observation> for Times {
+    fn from_iter<I: IntoIterator<Item = Observation>>(times: I) -> Self {
+        let mut all = Self::default();
+        all.extend(times);
+        all
+    }
+}
 
 /// What is known of times of which some were cut off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,6 +61,38 @@ pub struct Lasting {
     pub restricted_to: Option<f64>,
 }
 
+/// A time at which something happened.
+struct Step {
+    time: f64,
+    survival: f64,
+    at_risk: f64,
+    happened: f64,
+    survivors: f64,
+}
+
+/// The Kaplan–Meier curve of sorted times, without its band.
+fn curve(sorted: &Times) -> Vec<Step> {
+    let mut at_risk = sorted.len();
+    let mut survival = 1.0;
+    let mut steps = Vec::new();
+    for tied in sorted.0.chunk_by(|a, b| a.abs().total_cmp(&b.abs()).is_eq()) {
+        let happened = tied.iter().filter(|time| time.is_sign_positive()).count();
+        if happened > 0 {
+            let step = Step {
+                time: tied[0].abs(),
+                survival: survival * ((at_risk - happened) as f64 / at_risk as f64),
+                at_risk: at_risk as f64,
+                happened: happened as f64,
+                survivors: (at_risk - happened) as f64,
+            };
+            survival = step.survival;
+            steps.push(step);
+        }
+        at_risk -= tied.len();
+    }
+    steps
+}
+
 /// What each trial adds to the mean of all `times`, restricted to the longest of them if that was cut off (the area under the
 /// Kaplan–Meier curve, Irwin, 1949): the sum of the pseudo-values of its times (Andersen, Klein and Rosthøj, 2003, by the
 /// infinitesimal jackknife), and how many there are. Without cut-offs these are the times themselves; in any case they add up to the
@@ -20,21 +101,24 @@ pub struct Lasting {
 ///
 /// A time may be cut off by whatever has nothing to do with how long it would have lasted: the end of the run, failures, range.
 #[must_use]
-pub fn pseudo_values(times: &[&[Observation]]) -> (Vec<Part>, Lasting) {
-    let all: Vec<Observation> = times.iter().flat_map(|times| times.iter().copied()).collect();
+pub fn pseudo_values(times: &[Times]) -> (Vec<Part>, Lasting) {
+    let mut all: Times = times.iter().flat_map(Times::iter).collect();
+    all.sort();
     let cut_off = all.iter().filter(|seen| !seen.happened).count() as u64;
-    let curve = survival_curve(&all);
-    let longest = all.iter().map(|seen| seen.time).fold(0.0, f64::max);
+    let longest = all.iter().last().map_or(0.0, |seen| seen.time);
+    let count = all.len() as f64;
+    let curve = curve(&all);
+    drop(all);
     let left = curve.last().map_or(1.0, |step| step.survival);
     let lasting = Lasting {
         cut_off,
-        restricted_to: (left > 0.0 && !all.is_empty()).then_some(longest),
+        restricted_to: (left > 0.0 && count > 0.0).then_some(longest),
     };
     if curve.is_empty() {
         return (vec![[0.0; 2]; times.len()], lasting);
     }
     if cut_off == 0 {
-        let sum = |times: &&[Observation]| [times.iter().map(|seen| seen.time).sum(), times.len() as f64];
+        let sum = |times: &Times| [times.iter().map(|seen| seen.time).sum(), times.len() as f64];
         return (times.iter().map(sum).collect(), lasting);
     }
     // The area under the curve from each step on.
@@ -53,21 +137,24 @@ pub fn pseudo_values(times: &[&[Observation]]) -> (Vec<Part>, Lasting) {
         .iter()
         .zip(&areas)
         .map(|(step, area)| {
-            let survivors = step.at_risk - step.happened;
-            let ends = if survivors > 0 { area / survivors as f64 } else { 0.0 };
-            reach += ends * step.happened as f64 / step.at_risk as f64;
+            let ends = if step.survivors > 0.0 {
+                area / step.survivors
+            } else {
+                0.0
+            };
+            reach += ends * step.happened / step.at_risk;
             (step.time, reach, ends)
         })
         .collect();
-    let pseudo_value = |seen: &Observation| {
+    let pseudo_value = |seen: Observation| {
         let upto = steps.partition_point(|step| step.0 <= seen.time);
         let Some((time, reach, ends)) = upto.checked_sub(1).map(|last| steps[last]) else {
             return mean;
         };
         let ended = seen.happened && time.total_cmp(&seen.time).is_eq();
-        mean + all.len() as f64 * (reach - if ended { ends } else { 0.0 })
+        mean + count * (reach - if ended { ends } else { 0.0 })
     };
-    let part = |times: &&[Observation]| [times.iter().map(pseudo_value).sum(), times.len() as f64];
+    let part = |times: &Times| [times.iter().map(pseudo_value).sum(), times.len() as f64];
     (times.iter().map(part).collect(), lasting)
 }
 
@@ -76,14 +163,20 @@ mod tests {
     use super::super::{Estimator, ratio_of_sums};
     use super::*;
 
-    fn seen(times: &[f64], cut_off: &[f64]) -> Vec<Observation> {
+    fn seen(times: &[f64], cut_off: &[f64]) -> Times {
         let of = |times: &[f64], happened| {
-            times
-                .iter()
-                .map(move |&time| Observation { time, happened })
-                .collect::<Vec<_>>()
+            let seen = times.iter().map(move |&time| Observation { time, happened });
+            seen.collect::<Vec<_>>()
         };
-        [of(times, true), of(cut_off, false)].concat()
+        of(times, true).into_iter().chain(of(cut_off, false)).collect()
+    }
+
+    /// Parts of all times, one after the other.
+    fn split(times: &Times, at: &[usize]) -> Vec<Times> {
+        let ends = at.iter().copied().chain([times.len()]);
+        let starts = [0].into_iter().chain(at.iter().copied());
+        let part = |(start, end): (usize, usize)| times.iter().skip(start).take(end - start).collect();
+        starts.zip(ends).map(part).collect()
     }
 
     #[test]
@@ -93,7 +186,7 @@ mod tests {
             &[6.0, 6.0, 6.0, 7.0, 10.0, 13.0, 16.0, 22.0, 23.0],
             &[6.0, 9.0, 10.0, 11.0, 17.0, 19.0, 20.0, 25.0, 32.0, 32.0, 34.0, 35.0],
         );
-        for trials in [vec![&treated[..]], vec![&treated[..4], &treated[4..11], &treated[11..]]] {
+        for trials in [split(&treated, &[]), split(&treated, &[4, 11])] {
             let (parts, lasting) = pseudo_values(&trials);
             assert!((ratio_of_sums(parts) - 23.287_394_957_983_19).abs() < 1e-9);
             assert_eq!((lasting.cut_off, lasting.restricted_to), (12, Some(35.0)));
@@ -103,7 +196,7 @@ mod tests {
     #[test]
     fn without_cut_offs_pseudo_values_are_the_times_themselves() {
         let (a, b) = (seen(&[1.0, 4.0], &[]), seen(&[2.5], &[]));
-        let (parts, lasting) = pseudo_values(&[&a, &b, &[]]);
+        let (parts, lasting) = pseudo_values(&[a, b, Times::default()]);
         assert_eq!(
             (parts, lasting),
             (vec![[5.0, 2.0], [2.5, 1.0], [0.0, 0.0]], Lasting::default())
@@ -121,10 +214,10 @@ mod tests {
             })
             .collect();
         let mean = |times: &[Observation]| {
-            let (parts, _) = pseudo_values(&[times]);
+            let (parts, _) = pseudo_values(&[times.iter().copied().collect()]);
             ratio_of_sums(parts)
         };
-        let trials: Vec<&[Observation]> = times.chunks(1).collect();
+        let trials: Vec<Times> = times.iter().map(|&time| Times::from_iter([time])).collect();
         let (parts, _) = pseudo_values(&trials);
         let longest = times.iter().map(|seen| seen.time).fold(0.0, f64::max);
         for (number, part) in parts
@@ -145,10 +238,10 @@ mod tests {
 
     #[test]
     fn times_that_were_all_cut_off_have_no_mean_and_the_last_may_be_over_by_itself() {
-        let (parts, lasting) = pseudo_values(&[&seen(&[], &[3.0, 5.0])]);
+        let (parts, lasting) = pseudo_values(&[seen(&[], &[3.0, 5.0])]);
         assert_eq!(Estimator::Times.estimate(&parts).value, None);
         assert_eq!((lasting.cut_off, lasting.restricted_to), (2, Some(5.0)));
-        let (parts, lasting) = pseudo_values(&[&seen(&[2.0, 6.0], &[3.0])]);
+        let (parts, lasting) = pseudo_values(&[seen(&[2.0, 6.0], &[3.0])]);
         // S is 2/3 from 2 s on and 0 from 6 s on.
         assert!((ratio_of_sums(parts) - 14.0 / 3.0).abs() < 1e-12 && lasting.restricted_to.is_none());
         assert_eq!(pseudo_values(&[]).1, Lasting::default());
@@ -177,7 +270,7 @@ mod tests {
                     }
                 })
                 .collect();
-            let (parts, lasting) = pseudo_values(&[&times]);
+            let (parts, lasting) = pseudo_values(&[times.iter().copied().collect()]);
             let found = ratio_of_sums(parts);
             let over: Vec<f64> = times
                 .iter()

@@ -182,7 +182,7 @@ fn place(record: &TrialRecord, robot: u32, at: SimTime) -> Vec2 {
 /// The most that `robot` was away from its place at `from` at any sample from then until `until`, metres.
 fn excursion(record: &TrialRecord, robot: u32, from: SimTime, until: SimTime) -> f64 {
     let home = place(record, robot, from);
-    let samples = record.trajectories.iter().map(|(at, _)| *at);
+    let samples = record.trajectories.iter().map(|(at, _)| at);
     samples
         .filter(|at| (from..=until).contains(at))
         .map(|at| (place(record, robot, at) - home).norm())
@@ -207,7 +207,7 @@ impl Harm {
         let mistakes: Vec<_> = later
             .filter(|suspicion| suspicion.at >= finished && suspicion.verdict() == Verdict::Mistake)
             .collect();
-        let is_about_kin = |mistake: &&&Suspicion| {
+        let is_about_kin = |mistake: &&Suspicion| {
             let (observer, subject) = (mistake.observer, mistake.subject);
             parents(observer).contains(&subject) || parents(subject).contains(&observer)
         };

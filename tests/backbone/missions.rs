@@ -148,8 +148,8 @@ fn robots_that_do_for_one_target_alone_build_a_single_full_chain_and_visit_one_t
     let record = run("paper/completion_40x2.ron", &[swarm, "time_limit=1500.0"], 0);
     let mut held = Vec::new();
     for (sample, (at, places)) in record.connectivity.iter().zip(&record.trajectories) {
-        assert_eq!(sample.at, *at);
-        let is_held = |target: &usize| sample.links[*target] == 2 && is_visited(*target, places);
+        assert_eq!(sample.at, at);
+        let is_held = |target: &usize| sample.links[*target] == 2 && is_visited(*target, &places);
         let now: Vec<usize> = (0..4).filter(is_held).collect();
         assert!(now.len() <= 1, "{now:?} at {} s", at.as_secs());
         held.extend(now);
@@ -168,7 +168,7 @@ fn too_few_robots_for_all_targets_visit_one_after_another() {
     assert!(record.lambda2_min().is_some_and(|lambda2| lambda2 > 0.0));
     let mut visits = Vec::new();
     for (at, places) in &record.trajectories {
-        for target in (0..4).filter(|&target| is_visited(target, places)) {
+        for target in (0..4).filter(|&target| is_visited(target, &places)) {
             if !visits.contains(&target) {
                 assert!(at.as_secs() > 0.0);
                 visits.push(target);

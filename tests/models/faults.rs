@@ -168,7 +168,7 @@ fn a_crashed_robot_misses_its_control_steps_and_keeps_its_rhythm_afterwards() {
 fn crashed_robots_stand_where_they_stopped() {
     let all: Vec<u32> = (0..20).collect();
     let record = run(&backbone(30.0, &format!("[Crash(robots: {all:?}, at: 15.0)]")));
-    let at = |second: usize| &record.trajectories[second].1;
+    let at = |second: usize| record.trajectories.get(second).unwrap().1;
     assert_ne!(at(14), at(15), "they moved before");
     assert_eq!(at(18), at(30), "and have stopped within three seconds");
 }

@@ -22,7 +22,7 @@ fn ways(record: &TrialRecord) -> Vec<Vec<Vec2>> {
             record
                 .trajectories
                 .iter()
-                .map(|(_, places)| place(robot, places))
+                .map(|(_, places)| place(robot, &places))
                 .collect()
         })
         .collect()

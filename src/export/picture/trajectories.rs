@@ -27,10 +27,9 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
     let pixel = size.max() / ARENA_PIXELS;
     let crowd = (20.0 / record.robots.len().max(1) as f64).sqrt().min(1.0);
     let width = (WIDEST * crowd).max(NARROWEST);
-    let paths: Vec<Path> = (0..record.robots.len())
-        .map(|robot| path(record, robot, RESOLUTION * pixel))
-        .collect();
-    let since = since(&paths, INK * size.x * size.y / (width * pixel));
+    let most = INK * size.x * size.y / (width * pixel);
+    let paths = paths(record, RESOLUTION * pixel, most);
+    let since = since(&paths, most);
     let cut = if since > 0.0 {
         format!(", from {since:.0} s on")
     } else {
@@ -95,21 +94,42 @@ fn legend(canvas: &mut Canvas, scene: &Scene, record: &TrialRecord, with_start: 
 /// Where a robot was, and when, seconds.
 type Path = Vec<(f64, Vec2)>;
 
-/// The places where a robot was sampled, and where it ended, those closer together than `resolution` left out.
-fn path(record: &TrialRecord, robot: usize, resolution: f64) -> Path {
-    let sampled = record
-        .trajectories
-        .iter()
-        .filter_map(|(at, places)| Some((at.as_secs(), places.get(robot)?)));
-    let places = sampled.map(|(at, [x, y])| (at, Vec2::new(f64::from(*x), f64::from(*y))));
-    let end = (record.simulated.as_secs(), record.robots[robot].pose.position);
-    let mut path = Path::new();
-    for (at, place) in places.chain([end]) {
-        if path.last().is_none_or(|(_, last)| (place - last).norm() >= resolution) {
-            path.push((at, place));
+/// The places where each robot was sampled, and where it ended, those closer together than `resolution` metres left out. What is
+/// farther back than the last `most` metres of all of them need not be there: a run may be long.
+fn paths(record: &TrialRecord, resolution: f64, most: f64) -> Vec<Path> {
+    let mut paths = vec![Path::new(); record.robots.len()];
+    let mut length = 0.0;
+    let mut go = |paths: &mut [Path], robot: usize, at: f64, place: Vec2| {
+        let way = paths[robot]
+            .last()
+            .map_or(f64::INFINITY, |(_, last)| (place - last).norm());
+        if way >= resolution {
+            paths[robot].push((at, place));
+            length += if way.is_finite() { way } else { 0.0 };
+        }
+        if length > 4.0 * most {
+            // What rounding leaves undecided at `most` is well within twice that.
+            let from = since(paths, 2.0 * most);
+            length = 2.0 * most;
+            for path in paths {
+                path.drain(..path.partition_point(|(at, _)| *at < from).saturating_sub(1));
+            }
+        }
+    };
+    for (at, places) in &record.trajectories {
+        for (robot, place) in places.iter().enumerate() {
+            go(
+                &mut paths,
+                robot,
+                at.as_secs(),
+                Vec2::new(place[0].into(), place[1].into()),
+            );
         }
     }
-    path
+    for (robot, state) in record.robots.iter().enumerate() {
+        go(&mut paths, robot, record.simulated.as_secs(), state.pose.position);
+    }
+    paths
 }
 
 /// The time from which on all paths together are no longer than `most` metres; 0 if they are none at all.

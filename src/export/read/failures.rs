@@ -31,7 +31,7 @@ pub fn detection(records: &mut Records, table: &Table) -> Result<(), Wrong> {
         );
         let detection = &mut records.of(trial[row])?.detection;
         match event[row].as_str() {
-            "suspicion" => detection.suspicions.push(Suspicion {
+            "suspicion" => detection.suspicions.push(&Suspicion {
                 observer,
                 subject,
                 at,
@@ -49,7 +49,7 @@ pub fn detection(records: &mut Records, table: &Table) -> Result<(), Wrong> {
                 duration: mistake[row].map(Span::from_secs),
                 cut_off: cut_off[row] == Some(1),
             }),
-            "failure" => detection.failures.push(ObservedFailure {
+            "failure" => detection.failures.push(&ObservedFailure {
                 subject,
                 observer,
                 at,

@@ -10,13 +10,14 @@ mod traffic;
 mod trials;
 
 use std::collections::BTreeMap;
+use std::fs::File;
 
 pub use records::NameLists;
 
 use crate::metrics::TrialRecord;
-use fill::{OPTIONAL as MAYBE, TABLES};
+use fill::{Fill, OPTIONAL as MAYBE, TABLES};
 use records::Records;
-use table::Table;
+use table::{Table, Wrong};
 
 /// Names of the tables that are read.
 pub const READ: [&str; TABLES.len()] = {
@@ -32,26 +33,31 @@ pub const READ: [&str; TABLES.len()] = {
 /// Names of the tables that are read where they are there.
 pub const OPTIONAL: [&str; MAYBE.len()] = [MAYBE[0].0];
 
-/// The records that `files`, the bytes of the tables of [`READ`] and [`OPTIONAL`] by name, were written from, but for their paths and the
+/// The records that `files`, the tables of [`READ`] and [`OPTIONAL`] by name, were written from, but for their paths and the
 /// numbers of the frames that suspicions began with, which no report needs.
 ///
 /// # Errors
 /// The table that is not what it should be, and how.
 pub fn records(
-    files: &mut BTreeMap<String, Vec<u8>>,
+    files: &mut BTreeMap<String, File>,
     names: &NameLists,
 ) -> Result<Vec<TrialRecord>, (&'static str, String)> {
     let mut records = Records::new(names);
-    for (name, fill) in TABLES {
-        let bytes = files.remove(name).unwrap_or_default();
-        let table = Table::new(bytes).and_then(|table| fill(&mut records, &table));
-        table.map_err(|wrong| (name, wrong))?;
-    }
-    for (name, fill) in MAYBE {
-        if let Some(bytes) = files.remove(name) {
-            let table = Table::new(bytes).and_then(|table| fill(&mut records, &table));
-            table.map_err(|wrong| (name, wrong))?;
+    for (name, fill) in TABLES.into_iter().chain(MAYBE) {
+        if let Some(file) = files.remove(name) {
+            fill_from(file, fill, &mut records).map_err(|wrong| (name, wrong))?;
         }
     }
     Ok(records.finish())
+}
+
+/// Fills the records with one group of a table's rows at a time: a table may be larger than the memory.
+fn fill_from(file: File, fill: Fill, records: &mut Records) -> Result<(), Wrong> {
+    let mut table = Table::new(file)?;
+    loop {
+        fill(records, &table)?;
+        if !table.advance() {
+            return Ok(());
+        }
+    }
 }

@@ -26,7 +26,7 @@ pub fn connectivity(records: &mut Records, table: &Table) -> Result<(), Wrong> {
     }
     let at = |columns: &[Vec<Option<u32>>], row: usize| columns.iter().filter_map(|column| column[row]).collect();
     for row in 0..trial.len() {
-        records.of(trial[row])?.connectivity.push(ConnectivitySample {
+        records.of(trial[row])?.connectivity.push(&ConnectivitySample {
             at: SimTime::from_secs(time[row]),
             lambda2: lambda2[row],
             components: components[row],

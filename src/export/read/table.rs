@@ -1,6 +1,7 @@
 //! A Parquet file read back by the names and types of its columns.
 
-use bytes::Bytes;
+use std::fs::File;
+
 use parquet::basic::Type as Physical;
 use parquet::column::reader::get_typed_column_reader;
 use parquet::data_type::{ByteArrayType, DataType, DoubleType, Int32Type, Int64Type};
@@ -10,9 +11,11 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 /// What is wrong with a table, in words.
 pub type Wrong = String;
 
-/// A table, whole in memory.
+/// A group of a table's rows.
 pub struct Table {
-    reader: SerializedFileReader<Bytes>,
+    reader: SerializedFileReader<File>,
+    /// Number of the group.
+    group: usize,
 }
 
 /// A column as the file holds it: values where there are some, and for each row and place in a list whether it has one
@@ -24,14 +27,20 @@ struct Levels<T> {
 }
 
 impl Table {
-    /// The table in a file's bytes.
+    /// The first rows of the table in a file.
     ///
     /// # Errors
-    /// If they are no Parquet file.
-    pub fn new(bytes: Vec<u8>) -> Result<Self, Wrong> {
-        SerializedFileReader::new(Bytes::from(bytes))
-            .map(|reader| Self { reader })
+    /// If it is no Parquet file.
+    pub fn new(file: File) -> Result<Self, Wrong> {
+        SerializedFileReader::new(file)
+            .map(|reader| Self { reader, group: 0 })
             .map_err(|error| format!("no Parquet file: {error}"))
+    }
+
+    /// Goes on to the next rows; false if there are none.
+    pub fn advance(&mut self) -> bool {
+        self.group += 1;
+        self.group < self.reader.num_row_groups()
     }
 
     /// Whether there is such a column.
@@ -183,23 +192,25 @@ impl Table {
     }
 
     fn fill<T: DataType>(&self, place: usize, into: &mut Levels<T::T>) -> Result<(), ParquetError> {
-        for group in 0..self.reader.num_row_groups() {
-            let group = self.reader.get_row_group(group)?;
-            let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-            let mut column = get_typed_column_reader::<T>(group.get_column_reader(place)?);
-            let mut read = 0;
-            while read < rows {
-                let (records, _, _) = column.read_records(
-                    rows - read,
-                    Some(&mut into.present),
-                    Some(&mut into.continued),
-                    &mut into.values,
-                )?;
-                if records == 0 {
-                    return Err(ParquetError::EOF(format!("{read} rows instead of {rows}")));
-                }
-                read += records;
+        // A table without rows has no groups.
+        if self.group >= self.reader.num_row_groups() {
+            return Ok(());
+        }
+        let group = self.reader.get_row_group(self.group)?;
+        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        let mut column = get_typed_column_reader::<T>(group.get_column_reader(place)?);
+        let mut read = 0;
+        while read < rows {
+            let (records, _, _) = column.read_records(
+                rows - read,
+                Some(&mut into.present),
+                Some(&mut into.continued),
+                &mut into.values,
+            )?;
+            if records == 0 {
+                return Err(ParquetError::EOF(format!("{read} rows instead of {rows}")));
             }
+            read += records;
         }
         Ok(())
     }

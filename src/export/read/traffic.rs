@@ -140,25 +140,25 @@ pub fn series(records: &mut Records, table: &Table) -> Result<(), Wrong> {
         let entries = &mut records.of(trial[row])?.series;
         let at = SimTime::from_secs(time[row]);
         if entries.last().map(|last| last.at) != Some(at) {
-            entries.push(SeriesEntry {
+            entries.push(&SeriesEntry {
                 since: SimTime::from_secs(since[row]),
                 at,
                 sent: vec![RobotBytes::default(); topics + 1],
                 received: vec![RobotBytes::default(); topics + 1],
             });
         }
-        let Some(entry) = entries.last_mut() else { continue };
-        let ways = match direction[row].as_str() {
-            "tx" => &mut entry.sent,
-            "rx" => &mut entry.received,
+        let way: fn(&mut SeriesEntry) -> &mut Vec<RobotBytes> = match direction[row].as_str() {
+            "tx" => |entry| &mut entry.sent,
+            "rx" => |entry| &mut entry.received,
             other => return Err(format!("it has rows of an unknown direction `{other}`")),
         };
-        ways[topic] = RobotBytes {
+        let bytes = RobotBytes {
             total: total[row],
             min: min[row],
             median: median[row],
             max: max[row],
         };
+        entries.change(entries.len() - 1, |entry| way(entry)[topic] = bytes);
     }
     Ok(())
 }

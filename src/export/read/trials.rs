@@ -5,6 +5,7 @@ use super::table::{Table, Wrong};
 use crate::engine::{SimTime, Span};
 use crate::metrics::detection::DetectionRecord;
 use crate::metrics::{LatencyHistogram, Outcome, TopicFates, TrialRecord};
+use crate::spool::Spool;
 
 /// Begins a record for each row of `trials.parquet`.
 pub fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
@@ -45,10 +46,10 @@ pub fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             healing: Vec::new(),
             spread: Vec::new(),
             noted: Vec::new(),
-            connectivity: Vec::new(),
-            series: Vec::new(),
+            connectivity: Spool::default(),
+            series: Spool::default(),
             robots: Vec::new(),
-            trajectories: Vec::new(),
+            trajectories: Spool::default(),
             trace: None,
         };
         records.by_trial.insert(trial[row], record);

@@ -14,7 +14,7 @@ pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
     let samples = record.connectivity.iter();
     samples.map(|sample| Row {
         trial: record.trial,
-        sample: sample.clone(),
+        sample,
     })
 }
 

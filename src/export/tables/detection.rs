@@ -19,8 +19,8 @@ enum Event {
 
 /// First the suspicions, then the failures, each in order of time.
 pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
-    let suspicions = record.detection.suspicions.iter().cloned().map(Event::Suspicion);
-    let failures = record.detection.failures.iter().cloned().map(Event::Failure);
+    let suspicions = record.detection.suspicions.iter().map(Event::Suspicion);
+    let failures = record.detection.failures.iter().map(Event::Failure);
     let trial = record.trial;
     suspicions.chain(failures).map(move |event| Row { trial, event })
 }

@@ -17,15 +17,15 @@ pub struct Row {
 
 pub fn rows(record: &TrialRecord, names: &Names) -> impl Iterator<Item = Row> {
     record.series.iter().flat_map(move |entry| {
-        let sent = entry.sent.iter().map(|robots| ("tx", robots)).enumerate();
-        let received = entry.received.iter().map(|robots| ("rx", robots)).enumerate();
+        let sent = entry.sent.into_iter().map(|robots| ("tx", robots)).enumerate();
+        let received = entry.received.into_iter().map(|robots| ("rx", robots)).enumerate();
         sent.chain(received).map(move |(topic, (direction, robots))| Row {
             trial: record.trial,
             since: entry.since,
             at: entry.at,
             topic: (topic < names.topics.len()).then(|| names.topic(topic)),
             direction,
-            robots: *robots,
+            robots,
         })
     })
 }

@@ -15,9 +15,9 @@ pub struct Row {
 pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
     record.trajectories.iter().flat_map(move |(at, places)| {
         let robots = (0..).zip(places);
-        robots.map(move |(robot, &place)| Row {
+        robots.map(move |(robot, place)| Row {
             trial: record.trial,
-            at: *at,
+            at,
             robot,
             place,
         })

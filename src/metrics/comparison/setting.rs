@@ -89,7 +89,7 @@ impl Survival {
         Self {
             median: median_survival(&observations),
             censored: observations.iter().filter(|seen| !seen.happened).count() as u64,
-            curve: survival_curve(&observations),
+            curve: survival_curve(observations.iter().copied()),
         }
     }
 }

@@ -3,16 +3,17 @@
 use std::num::NonZeroU32;
 
 use crate::engine::{ActorId, SimTime};
+use crate::spool::{Entry, Scratch, Spool};
 
 use super::record::{FailureOutcome, ObservedFailure, Suspicion, Verdict};
 
 /// What has been counted.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Tally {
     pub monitored_nanos: u128,
     pub mistaken_nanos: u128,
-    pub suspicions: Vec<Suspicion>,
-    pub failures: Vec<ObservedFailure>,
+    pub suspicions: Spool<Suspicion>,
+    pub failures: Spool<ObservedFailure>,
 }
 
 /// A subject, at its observer.
@@ -36,12 +37,25 @@ pub struct Pair {
 pub type Place = NonZeroU32;
 
 /// The place of what is next added to `list`.
-pub fn next_place<T>(list: &[T]) -> Place {
+pub fn next_place<T>(list: &Spool<T>) -> Place {
     Place::MIN.saturating_add(list.len() as u32)
 }
 
-pub fn at<T>(list: &mut [T], place: Place) -> &mut T {
-    &mut list[place.get() as usize - 1]
+/// Changes what is at `place`, and answers how it is then.
+pub fn change<T: Entry>(list: &mut Spool<T>, place: Place, change: impl FnOnce(&mut T)) -> T {
+    list.change(place.get() as usize - 1, change)
+}
+
+impl Tally {
+    /// Nothing counted yet; what there are many of goes to `scratch`.
+    pub fn new(scratch: &Scratch) -> Self {
+        Self {
+            monitored_nanos: 0,
+            mistaken_nanos: 0,
+            suspicions: Spool::new(scratch),
+            failures: Spool::new(scratch),
+        }
+    }
 }
 
 impl Pair {
@@ -67,23 +81,25 @@ impl Pair {
     /// A mistake, if there is one, ends at `now`: in trust, or cut off.
     pub fn end_mistake(&mut self, now: SimTime, cut_off: bool, tally: &mut Tally) {
         if let (true, Some(suspicion)) = (std::mem::take(&mut self.mistaken), self.suspicion) {
-            let suspicion = at(&mut tally.suspicions, suspicion);
-            // Of a suspicion that became a mistake in range, or again, it is not known how long one lasts.
-            if suspicion.verdict() == Verdict::Mistake && suspicion.duration.is_none() {
-                suspicion.duration = Some(now.since(suspicion.at));
-                suspicion.cut_off = cut_off;
-            }
+            change(&mut tally.suspicions, suspicion, |suspicion| {
+                // Of a suspicion that became a mistake in range, or again, it is not known how long one lasts.
+                if suspicion.verdict() == Verdict::Mistake && suspicion.duration.is_none() {
+                    suspicion.duration = Some(now.since(suspicion.at));
+                    suspicion.cut_off = cut_off;
+                }
+            });
         }
     }
 
     /// The failure ends at `now`: it was detected if the subject is suspected, else the `outcome` is another.
     pub fn resolve(&mut self, now: SimTime, outcome: FailureOutcome, tally: &mut Tally) {
         if let Some(failure) = self.failure.take() {
-            let failure = at(&mut tally.failures, failure);
-            let suspicion = self.suspicion.map(|suspicion| &*at(&mut tally.suspicions, suspicion));
-            let detected = suspicion.map(|suspicion| suspicion.at.since(failure.at));
-            failure.outcome = detected.map_or(outcome, FailureOutcome::Detected);
-            failure.watched = detected.unwrap_or_else(|| now.since(failure.at));
+            let suspicion = self.suspicion.map(|place| change(&mut tally.suspicions, place, |_| ()));
+            change(&mut tally.failures, failure, |failure| {
+                let detected = suspicion.map(|suspicion| suspicion.at.since(failure.at));
+                failure.outcome = detected.map_or(outcome, FailureOutcome::Detected);
+                failure.watched = detected.unwrap_or_else(|| now.since(failure.at));
+            });
         }
     }
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::radio::LossCause;
+use crate::spool::{Entry, Spool, entry};
 
 /// What the failure detectors of one trial did, held against the truth.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -15,9 +16,9 @@ pub struct DetectionRecord {
     /// The part of it that pairs spent in a mistake, seconds.
     pub mistaken_s: f64,
     /// Every suspicion, in order of time.
-    pub suspicions: Vec<Suspicion>,
+    pub suspicions: Spool<Suspicion>,
     /// Every failure of a robot to send, once for each observer that monitored it then, in order of time.
-    pub failures: Vec<ObservedFailure>,
+    pub failures: Spool<ObservedFailure>,
 }
 
 /// An observer came to believe that a subject is down.
@@ -203,6 +204,47 @@ impl FailureOutcome {
             Self::ObserverFailed => "observer_failed",
             Self::Undetected => "undetected",
         }
+    }
+}
+
+entry! {
+    Suspicion { observer, subject, at, heard, sequence, until, subject_down, cause, missed, duration, cut_off }
+    Missed { lost, out_of_range, under_way }
+    ObservedFailure { subject, observer, at, outcome, watched }
+}
+
+impl Entry for Cause {
+    fn put(&self, into: &mut Vec<u8>) {
+        let place = Self::ALL.iter().position(|cause| cause == self);
+        place.map_or(u8::MAX, |place| place as u8).put(into);
+    }
+
+    fn take(from: &mut &[u8]) -> Option<Self> {
+        Self::ALL.get(usize::from(u8::take(from)?)).copied()
+    }
+}
+
+impl Entry for FailureOutcome {
+    fn put(&self, into: &mut Vec<u8>) {
+        let (kind, after) = match *self {
+            Self::Detected(after) => (0_u8, after),
+            Self::Recovered => (1, Span::ZERO),
+            Self::ObserverFailed => (2, Span::ZERO),
+            Self::Undetected => (3, Span::ZERO),
+        };
+        (kind, after).put(into);
+    }
+
+    fn take(from: &mut &[u8]) -> Option<Self> {
+        let (kind, after) = <(u8, Span)>::take(from)?;
+        [
+            Self::Detected(after),
+            Self::Recovered,
+            Self::ObserverFailed,
+            Self::Undetected,
+        ]
+        .get(usize::from(kind))
+        .copied()
     }
 }
 

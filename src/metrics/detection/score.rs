@@ -7,9 +7,10 @@ use crate::happenings::Inbox;
 use crate::motion::World;
 use crate::protocol::{Evidence, Note};
 use crate::radio::LossCause;
+use crate::spool::Scratch;
 
 use super::log::StatusLog;
-use super::pair::{Pair, Tally, at, next_place};
+use super::pair::{Pair, Tally, change, next_place};
 use super::range::{Crossing, Ranges};
 use super::record::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion, Verdict};
 
@@ -44,7 +45,7 @@ pub struct Scorer {
 
 impl Scorer {
     /// A scorer of robots that all are well.
-    pub fn new(robots: usize, watching: Watching) -> Self {
+    pub fn new(robots: usize, watching: Watching, scratch: &Scratch) -> Self {
         Self {
             log: StatusLog::new(robots, watching.memory),
             patience: watching.patience,
@@ -54,7 +55,7 @@ impl Scorer {
             silences: vec![Vec::new(); robots],
             pairs: std::iter::repeat_with(Vec::new).take(robots).collect(),
             watchers: vec![Vec::new(); robots],
-            tally: Tally::default(),
+            tally: Tally::new(scratch),
         }
     }
 
@@ -221,7 +222,7 @@ impl Scorer {
         // One that they brought with them is a mistake once they have been in range for long enough.
         let brought = able && (at..SimTime::NEVER).contains(&pair.settled);
         pair.mistaken = brought || suspicion.verdict() == Verdict::Mistake;
-        self.tally.suspicions.push(suspicion);
+        self.tally.suspicions.push(&suspicion);
         pair.resume(at, able);
     }
 
@@ -231,7 +232,9 @@ impl Scorer {
         pair.settle(now, &mut self.tally);
         pair.end_mistake(now, false, &mut self.tally);
         if let Some(suspicion) = pair.suspicion.take() {
-            at(&mut self.tally.suspicions, suspicion).until = Some(now);
+            change(&mut self.tally.suspicions, suspicion, |suspicion| {
+                suspicion.until = Some(now)
+            });
         }
         pair.resume(now, able);
     }
@@ -270,7 +273,7 @@ impl Scorer {
             pair.resolve(now, FailureOutcome::Recovered, &mut self.tally);
         } else if was_monitored {
             pair.failure = Some(next_place(&self.tally.failures));
-            self.tally.failures.push(ObservedFailure {
+            self.tally.failures.push(&ObservedFailure {
                 subject,
                 observer,
                 at: now,

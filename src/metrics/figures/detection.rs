@@ -5,7 +5,7 @@ use super::registry::Registry;
 use crate::metrics::detection::{DetectionRecord, FailureOutcome, Suspicion, Verdict};
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS};
-use crate::statistics::{Estimator, Observation};
+use crate::statistics::{Estimator, Observation, Times};
 
 pub(super) fn declare(registry: &mut Registry) {
     let count = |record: &TrialRecord| mistakes(&record.detection).count() as f64;
@@ -35,7 +35,7 @@ pub(super) fn declare(registry: &mut Registry) {
 }
 
 /// The suspicions of a trial that were mistakes.
-pub(in crate::metrics) fn mistakes(trial: &DetectionRecord) -> impl Iterator<Item = &Suspicion> {
+pub(in crate::metrics) fn mistakes(trial: &DetectionRecord) -> impl Iterator<Item = Suspicion> {
     trial
         .suspicions
         .iter()
@@ -44,7 +44,7 @@ pub(in crate::metrics) fn mistakes(trial: &DetectionRecord) -> impl Iterator<Ite
 
 /// How long each failure was watched until it was detected, or cut off.
 #[must_use]
-pub fn detection_times(trial: &DetectionRecord) -> Vec<Observation> {
+pub fn detection_times(trial: &DetectionRecord) -> Times {
     let seen = trial.failures.iter().map(|failure| Observation {
         time: failure.watched.as_secs(),
         happened: matches!(failure.outcome, FailureOutcome::Detected(_)),
@@ -54,7 +54,7 @@ pub fn detection_times(trial: &DetectionRecord) -> Vec<Observation> {
 
 /// How long each mistake lasted until trust, or until it was cut off.
 #[must_use]
-pub fn mistake_durations(trial: &DetectionRecord) -> Vec<Observation> {
+pub fn mistake_durations(trial: &DetectionRecord) -> Times {
     let durations = trial.suspicions.iter().filter_map(|suspicion| {
         Some(Observation {
             time: suspicion.duration?.as_secs(),

@@ -1,9 +1,11 @@
 //! What a figure is, and what a trial tells of one.
 
+use std::mem;
+
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::unit::Unit;
-use crate::statistics::{Estimate, Estimator, Lasting, Observation, Part, pseudo_values};
+use crate::statistics::{Estimate, Estimator, Lasting, Part, Times, pseudo_values};
 
 /// Key of the steps until a mission is complete.
 pub const COMPLETION: &str = "steps_to_completion";
@@ -44,7 +46,7 @@ pub struct Sample {
     pub is_censored: bool,
     /// The times that the trial tells of, where the figure is their mean; empty for other figures. Its part follows from those of all
     /// trials: see [`pool`].
-    pub times: Vec<Observation>,
+    pub times: Times,
 }
 
 impl Sample {
@@ -71,9 +73,10 @@ impl Sample {
 
     /// Of a mean of times, of which some may have been cut off.
     #[must_use]
-    pub fn times(times: Vec<Observation>) -> Self {
+    pub fn times(times: Times) -> Self {
+        let is_censored = times.iter().any(|seen| !seen.happened);
         Self {
-            is_censored: times.iter().any(|seen| !seen.happened),
+            is_censored,
             times,
             ..Self::default()
         }
@@ -83,13 +86,14 @@ impl Sample {
 /// Gives the samples of one setting and figure their parts where these follow from the times of all trials. Other samples stay as they
 /// are.
 pub fn pool(samples: &mut [Sample]) -> Option<Lasting> {
-    let times: Vec<&[Observation]> = samples.iter().map(|sample| sample.times.as_slice()).collect();
-    if times.iter().all(|times| times.is_empty()) {
+    if samples.iter().all(|sample| sample.times.is_empty()) {
         return None;
     }
+    let times: Vec<Times> = samples.iter_mut().map(|sample| mem::take(&mut sample.times)).collect();
     let (parts, lasting) = pseudo_values(&times);
-    for (sample, part) in samples.iter_mut().zip(parts) {
+    for ((sample, part), times) in samples.iter_mut().zip(parts).zip(times) {
         sample.part = part;
+        sample.times = times;
     }
     Some(lasting)
 }

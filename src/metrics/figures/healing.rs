@@ -6,12 +6,12 @@ use crate::engine::SimTime;
 use crate::metrics::episode::HealingEpisode;
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::DIMENSIONLESS;
-use crate::statistics::{Estimator, Observation};
+use crate::statistics::{Estimator, Observation, Times};
 
 pub(super) fn declare(registry: &mut Registry) {
     let harmful = |record: &TrialRecord| {
         let episodes = record.healing.iter().filter(|episode| episode.is_harmful());
-        let seen: Vec<_> = episodes.map(|episode| mending(episode, record.simulated)).collect();
+        let seen: Times = episodes.map(|episode| mending(episode, record.simulated)).collect();
         seen
     };
     registry.add_times("healing.unmended_s", "time unmended, a failure", harmful);

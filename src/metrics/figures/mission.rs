@@ -4,7 +4,7 @@ use super::figure::{Better, COMPLETION, Sample};
 use super::registry::Registry;
 use crate::metrics::record::{Outcome, TrialRecord};
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS, STEPS};
-use crate::statistics::{Estimator, Observation};
+use crate::statistics::{Estimator, Observation, Times};
 
 pub(super) fn declare(registry: &mut Registry) {
     let steps = (STEPS, Better::Lower, Estimator::Count);
@@ -12,7 +12,7 @@ pub(super) fn declare(registry: &mut Registry) {
         completion(record).map_or(Sample::default(), |seen| Sample {
             part: [seen.time, 1.0],
             is_censored: !seen.happened,
-            times: Vec::new(),
+            times: Times::default(),
         })
     });
     let seconds = (SECONDS, Better::Lower, Estimator::Count);

@@ -6,7 +6,7 @@ use super::figure::{Better, Figure, Sample, pool};
 use crate::metrics::noted_figure::NotedFigure;
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::SECONDS;
-use crate::statistics::{Estimate, Estimator, Lasting, Observation, Part};
+use crate::statistics::{Estimate, Estimator, Lasting, Part, Times};
 
 /// How a figure is read off a trial.
 type Reading = Rc<dyn Fn(&TrialRecord) -> Sample>;
@@ -152,7 +152,7 @@ impl Registry {
         &mut self,
         key: &str,
         name: &str,
-        reading: impl Fn(&TrialRecord) -> Vec<Observation> + 'static,
+        reading: impl Fn(&TrialRecord) -> Times + 'static,
     ) -> &mut Entry {
         let kind = (SECONDS, Better::Lower, Estimator::Times);
         self.add_as_ratio(key, name, kind, move |record| Sample::times(reading(record)))

@@ -9,6 +9,7 @@ use crate::happenings::Inbox;
 use crate::motion::World;
 use crate::protocol::{CompletionConfig, MessageSize, Note, Topic};
 use crate::radio::LossCause;
+use crate::spool::{Scratch, Spool};
 
 use super::completion::{Hearing, Judge, Progress};
 use super::config::MetricsConfig;
@@ -27,7 +28,7 @@ use super::traffic::{HeaderBytes, Traffic};
 use super::volume::{TopicFates, TrafficRow};
 
 /// The shape of a run, known before it starts.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Layout {
     /// Number of robots.
     pub robots: usize,
@@ -53,6 +54,8 @@ pub struct Layout {
     pub patience: Span,
     /// The topic of the statuses that the robots' failure detector listens to, if they run one.
     pub status: Option<Topic>,
+    /// Where what grows with simulated time has its files.
+    pub scratch: Scratch,
 }
 
 /// What only the hub knows when a run is over.
@@ -97,9 +100,9 @@ pub struct Recorder {
     notes: Notes,
     /// How far the rumours have come, if there are any.
     everyone_knows: Option<Hearing>,
-    connectivity: Vec<ConnectivitySample>,
+    connectivity: Spool<ConnectivitySample>,
     series: Series,
-    trajectories: Vec<(SimTime, Vec<[f32; 2]>)>,
+    trajectories: Spool<(SimTime, Vec<[f32; 2]>)>,
     /// The last sample's graph and its λ₂, which stands as long as no edge changes.
     last_graph: Option<(Graph, f64)>,
 }
@@ -112,6 +115,7 @@ impl Recorder {
             rumors,
             completion,
             control_period,
+            scratch,
             ..
         } = layout;
         Self {
@@ -132,6 +136,7 @@ impl Recorder {
                     patience: layout.patience,
                     range: layout.radio_range,
                 },
+                &scratch,
             ),
             status: layout.status,
             judge: layout
@@ -140,9 +145,9 @@ impl Recorder {
             spread: Spread::new(layout.rumors, layout.robots),
             notes: Notes::default(),
             everyone_knows: (rumors > 0).then(|| Hearing::new(rumors, completion, control_period)),
-            connectivity: Vec::new(),
-            series: Series::new(config.series_every),
-            trajectories: Vec::new(),
+            connectivity: Spool::new(&scratch),
+            series: Series::new(config.series_every, &scratch),
+            trajectories: Spool::new(&scratch),
             last_graph: None,
         }
     }
@@ -252,7 +257,7 @@ impl Recorder {
         let (components, neighbours) = (graph.components() as u32, graph.mean_degree());
         let lambda2 = self.lambda2(graph);
         let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
-        self.connectivity.push(ConnectivitySample {
+        self.connectivity.push(&ConnectivitySample {
             at: now,
             lambda2,
             components,
@@ -269,7 +274,7 @@ impl Recorder {
         });
         self.series.sample(now, &self.traffic);
         self.trajectories
-            .push((now, positions.iter().map(|p| [p.x, p.y].map(for_pictures)).collect()));
+            .push(&(now, positions.iter().map(|p| [p.x, p.y].map(for_pictures)).collect()));
     }
 
     /// λ₂ of `graph`, computed only if the graph differs from the last sample's.

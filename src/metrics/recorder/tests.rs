@@ -2,6 +2,7 @@ use super::*;
 use crate::faults::{Effect, Health};
 use crate::metrics::figures::Registry;
 use crate::protocol::Role;
+use crate::spool::Scratch;
 
 const RANGE: f64 = 2.0;
 
@@ -19,6 +20,7 @@ fn recorder(mission: Option<Mission>) -> Recorder {
         status_memory: Span::from_secs(8.0),
         patience: Span::from_secs(4.0),
         status: None,
+        scratch: Scratch::default(),
     };
     Recorder::new(layout, &MetricsConfig::default())
 }
@@ -93,7 +95,8 @@ fn samples_follow_the_graph_the_roles_and_the_paths() {
     recorder.sample(SimTime::from_secs(1.0), &line(0.5));
     recorder.sample(SimTime::from_secs(2.0), &line(2.5));
     let record = recorder.finish(end());
-    let [path, complete, apart] = &record.connectivity[..] else {
+    let samples: Vec<_> = record.connectivity.iter().collect();
+    let [path, complete, apart] = &samples[..] else {
         panic!("three samples")
     };
     assert!(
@@ -104,7 +107,7 @@ fn samples_follow_the_graph_the_roles_and_the_paths() {
     assert_eq!((apart.lambda2, apart.components), (0.0, 3));
     assert_eq!((&path.roles[..], &complete.roles[..]), (&[3, 0][..], &[2, 1][..]));
     assert_eq!(
-        record.trajectories[1].1[2].map(f32::to_bits),
+        record.trajectories.get(1).unwrap().1[2].map(f32::to_bits),
         [1.0_f32, 0.0].map(f32::to_bits)
     );
     assert_eq!(record.robots[1].role, 1);
@@ -186,7 +189,7 @@ fn a_robot_that_has_failed_is_no_part_of_the_graph() {
         recorder.fault(SimTime::from_secs(1.0), &change, &line(1.5));
         recorder.sample(SimTime::from_secs(2.0), &line(1.5));
         let record = recorder.finish(end());
-        let sample = &record.connectivity[0];
+        let sample = &record.connectivity.get(0).unwrap();
         assert_eq!((sample.components, failed), (components, failed));
         assert!((sample.lambda2 - lambda2).abs() < 1e-9, "{}", sample.lambda2);
     }
@@ -198,7 +201,10 @@ fn a_record_from_the_far_side_of_the_universe_is_read_back_as_it_was() {
     recorder.sample(SimTime::ZERO, &line(1e39));
     let record = recorder.finish(end());
     assert!(
-        record.trajectories[0]
+        record
+            .trajectories
+            .get(0)
+            .unwrap()
             .1
             .iter()
             .flatten()
@@ -225,7 +231,7 @@ fn a_mission_never_held_is_censored() {
     recorder.sample(SimTime::ZERO, &line(1.0));
     let record = recorder.finish(end());
     assert_eq!(
-        (record.outcome, &record.connectivity[0].links[..]),
+        (record.outcome, &record.connectivity.get(0).unwrap().links[..]),
         (Outcome::Censored, &[0][..])
     );
 }

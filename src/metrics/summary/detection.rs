@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::metrics::detection::{Cause, DetectionRecord, Suspicion, Verdict};
+use crate::metrics::detection::{Cause, DetectionRecord, Verdict};
 use crate::metrics::figures::mistakes;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS, Unit};
 
@@ -91,23 +91,28 @@ impl Detection {
 
 impl Suspicions {
     fn of(trials: &[&DetectionRecord]) -> Self {
-        let count = |wanted: &dyn Fn(&Suspicion) -> bool| {
-            let all = trials.iter().flat_map(|trial| &trial.suspicions);
-            all.filter(|suspicion| wanted(suspicion)).count() as u64
-        };
+        let mut by_cause = Cause::ALL.map(|cause| (cause, 0));
+        let mut by_verdict = Verdict::ALL.map(|verdict| (verdict, 0));
+        for suspicion in trials.iter().flat_map(|trial| &trial.suspicions) {
+            count(&mut by_cause, suspicion.cause);
+            count(&mut by_verdict, suspicion.verdict());
+        }
         // Probes are no cause where nobody probes.
-        let mut causes = Cause::ALL.to_vec();
-        causes.retain(|cause| *cause != Cause::Unanswered || count(&|suspicion| suspicion.cause == *cause) > 0);
+        let probed = |(cause, number): &(Cause, u64)| *cause != Cause::Unanswered || *number > 0;
+        let named = |(cause, number): (Cause, u64)| (cause.name().to_owned(), number);
         Self {
-            value: count(&|_| true),
-            by_cause: Named::of(causes.iter().map(|cause| cause.name()), |cause| {
-                count(&|suspicion| suspicion.cause == causes[cause])
-            }),
-            by_verdict: Named::of(Verdict::ALL.map(Verdict::name), |verdict| {
-                count(&|suspicion| suspicion.verdict() == Verdict::ALL[verdict])
-            }),
+            value: trials.iter().map(|trial| trial.suspicions.len() as u64).sum(),
+            by_cause: Named(by_cause.into_iter().filter(probed).map(named).collect()),
+            by_verdict: Named::of(Verdict::ALL.map(Verdict::name), |verdict| by_verdict[verdict].1),
             unit: SUSPICIONS.into(),
         }
+    }
+}
+
+/// One more of `kind`.
+fn count<K: PartialEq>(numbers: &mut [(K, u64)], kind: K) {
+    if let Some((_, number)) = numbers.iter_mut().find(|(own, _)| *own == kind) {
+        *number += 1;
     }
 }
 

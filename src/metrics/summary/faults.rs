@@ -7,7 +7,7 @@ use crate::metrics::episode::{FaultKind, HealingEpisode};
 use crate::metrics::figures::mending;
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{SECONDS, Unit};
-use crate::statistics::{Estimate, Estimator, Observation, Part, median_survival, pseudo_values};
+use crate::statistics::{Estimate, Estimator, Observation, Part, Times, median_survival, pseudo_values};
 
 use super::estimates::mean_count;
 use super::quantity::{Lasted, Measured, Named};
@@ -128,11 +128,11 @@ impl HealingSummary {
 
 impl Healed {
     fn of(topics: &[&str], trials: &[Vec<Case>]) -> Self {
-        let times: Vec<Vec<Observation>> = trials
+        let times: Vec<Times> = trials
             .iter()
             .map(|cases| cases.iter().map(|(episode, end)| mending(episode, *end)).collect())
             .collect();
-        let observations = times.concat();
+        let observations: Vec<Observation> = times.iter().flat_map(Times::iter).collect();
         let of_trial = |cases: &Vec<Case>, figure: &dyn Fn(&HealingEpisode) -> f64| -> Part {
             let mended = cases.iter().filter(|(episode, _)| episode.healed_at.is_some());
             mended.fold([0.0; 2], |[sum, count], (episode, _)| {
@@ -144,7 +144,7 @@ impl Healed {
                 .estimate(&trials.iter().map(|cases| of_trial(cases, figure)).collect::<Vec<_>>()),
             unit: unit.into(),
         };
-        let (parts, lasting) = pseudo_values(&times.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        let (parts, lasting) = pseudo_values(&times);
         Self {
             failures: observations.len() as u64,
             healed: observations.iter().filter(|seen| seen.happened).count() as u64,

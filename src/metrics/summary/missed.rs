@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::quantity::Named;
-use crate::engine::Span;
+use crate::engine::{SimTime, Span};
 use crate::metrics::record::{ConnectivitySample, Outcome, TargetState, TrialRecord};
 
 /// What stood in the way, by the names of `summary.json`.
@@ -96,44 +96,64 @@ impl MissedTarget {
 
 /// The targets for which a trial failed.
 fn misses(record: &TrialRecord) -> Vec<Miss> {
-    let samples = &record.connectivity;
-    let Some(last) = samples.last() else { return Vec::new() };
-    let held = |sample: &ConnectivitySample, target: usize| sample.targets[target].state == TargetState::Held;
-    let all = 0..last.targets.len();
-    let never = all
-        .clone()
-        .filter(|target| !samples.iter().any(|sample| held(sample, *target)));
-    let mut blocking: Vec<usize> = never.collect();
+    let targets = record.connectivity.first().map_or(0, |sample| sample.targets.len());
+    let all: Vec<Vec<Stand>> = (0..targets).map(|target| stands(record, target)).collect();
+    let held_for = |stands: &[Stand]| stands.iter().rev().take_while(|stand| stand.is_held()).count();
+    let that = |wanted: &dyn Fn(&[Stand]) -> bool| {
+        let places = 0..all.len();
+        places.filter(|&target| wanted(&all[target])).collect::<Vec<usize>>()
+    };
+    let mut blocking = that(&|stands| !stands.iter().any(Stand::is_held));
     if blocking.is_empty() {
-        blocking = all.clone().filter(|target| !held(last, *target)).collect();
+        blocking = that(&|stands| held_for(stands) == 0);
     }
     if blocking.is_empty() {
-        let since = |target: usize| samples.iter().rev().take_while(|sample| held(sample, target)).count();
-        blocking = all.min_by_key(|target| since(*target)).into_iter().collect();
+        let last = (0..all.len()).min_by_key(|&target| held_for(&all[target]));
+        blocking = last.into_iter().collect();
     }
-    blocking.into_iter().map(|target| miss(record, target)).collect()
+    let end = record.simulated;
+    blocking
+        .into_iter()
+        .map(|target| miss(end, target, &all[target]))
+        .collect()
 }
 
-fn miss(record: &TrialRecord, target: usize) -> Miss {
-    let samples = &record.connectivity;
-    let state = |sample: &ConnectivitySample| sample.targets[target].state;
-    let ends = samples.iter().skip(1).map(|sample| sample.at).chain([record.simulated]);
-    let spans = samples
-        .iter()
-        .zip(ends)
-        .filter(|(sample, _)| state(sample) != TargetState::Held);
-    let missed = spans.fold(Span::ZERO, |sum, (sample, end)| sum + end.since(sample.at));
+/// How a target stood in a sample.
+struct Stand {
+    at: SimTime,
+    state: TargetState,
+    worker_m: Option<f64>,
+    links: Option<u32>,
+}
+
+impl Stand {
+    fn is_held(&self) -> bool {
+        self.state == TargetState::Held
+    }
+}
+
+fn stands(record: &TrialRecord, target: usize) -> Vec<Stand> {
+    let stand = |sample: ConnectivitySample| Stand {
+        at: sample.at,
+        state: sample.targets[target].state,
+        worker_m: sample.targets[target].worker_m,
+        links: sample.links.get(target).copied(),
+    };
+    record.connectivity.iter().map(stand).collect()
+}
+
+fn miss(end: SimTime, target: usize, samples: &[Stand]) -> Miss {
+    let ends = samples.iter().skip(1).map(|stand| stand.at).chain([end]);
+    let spans = samples.iter().zip(ends).filter(|(stand, _)| !stand.is_held());
+    let missed = spans.fold(Span::ZERO, |sum, (stand, end)| sum + end.since(stand.at));
     // What stood in the way since it was held last.
-    let stretch = samples
-        .iter()
-        .rev()
-        .take_while(|sample| state(sample) != TargetState::Held);
-    let stretch: Vec<&ConnectivitySample> = stretch.collect();
-    let times = |wanted: TargetState| stretch.iter().filter(|sample| state(sample) == wanted).count();
+    let since = samples.iter().rposition(Stand::is_held).map_or(0, |held| held + 1);
+    let stretch = &samples[since..];
+    let times = |wanted: TargetState| stretch.iter().filter(|stand| stand.state == wanted).count();
     let hindrances = [TargetState::NoWorker, TargetState::Away, TargetState::LinksShort];
     // Of equals the last, which is the nearest to success.
     let most = hindrances.into_iter().max_by_key(|hindrance| times(*hindrance));
-    let way = |back: usize| stretch.get(back).and_then(|sample| sample.targets[target].worker_m);
+    let way = |back: usize| stretch.iter().rev().nth(back).and_then(|stand| stand.worker_m);
     let why = match most.filter(|_| !stretch.is_empty()) {
         None | Some(TargetState::Held) => 4,
         Some(TargetState::NoWorker) => 0,
@@ -143,16 +163,16 @@ fn miss(record: &TrialRecord, target: usize) -> Miss {
             _ => 1,
         },
     };
-    let short = stretch.iter().filter(|sample| state(sample) == TargetState::LinksShort);
-    let links = short.filter_map(|sample| sample.links.get(target)).max();
-    let ways = samples.iter().filter_map(|sample| sample.targets[target].worker_m);
+    let short = stretch.iter().filter(|stand| stand.state == TargetState::LinksShort);
+    let links = short.filter_map(|stand| stand.links).max();
+    let ways = samples.iter().filter_map(|stand| stand.worker_m);
     Miss {
         target,
         missed_s: missed.as_secs(),
         why,
-        links: links.map(|links| f64::from(*links)),
+        links: links.map(f64::from),
         nearest_m: ways.min_by(f64::total_cmp),
-        at_end_m: samples.last().and_then(|sample| sample.targets[target].worker_m),
+        at_end_m: samples.last().and_then(|stand| stand.worker_m),
     }
 }
 
@@ -167,12 +187,13 @@ fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::{ActorId, SimTime};
+    use crate::engine::ActorId;
     use crate::faults::Effect;
     use crate::geometry::Pose;
     use crate::metrics::episode::{FaultEpisode, FaultKind};
     use crate::metrics::record::TargetSample;
     use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Recorder, RunEnd};
+    use crate::spool::Scratch;
     use TargetState::{Away, Held, LinksShort, NoWorker};
 
     type Stand = (TargetState, Option<f64>, u32);
@@ -192,6 +213,7 @@ mod tests {
             status_memory: Span::from_secs(8.0),
             patience: Span::from_secs(4.0),
             status: None,
+            scratch: Scratch::default(),
         };
         let at = |place: usize| SimTime::from_secs(10.0 * place as f64);
         let record = Recorder::new(layout, &MetricsConfig::default()).finish(RunEnd {

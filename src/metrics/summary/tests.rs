@@ -1,3 +1,4 @@
+use crate::spool::Scratch;
 use serde_json::Value;
 
 use super::*;
@@ -39,6 +40,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
         status_memory: Span::from_secs(8.0),
         patience: Span::from_secs(4.0),
         status: None,
+        scratch: Scratch::default(),
     };
     let mut recorder = Recorder::new(layout, &MetricsConfig::default());
     for frame in 0..10 {

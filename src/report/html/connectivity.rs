@@ -28,7 +28,9 @@ const HEAD: [&str; 9] = [
 
 fn samples(record: &TrialRecord, value: impl Fn(&ConnectivitySample) -> Option<f64>) -> Vec<(SimTime, f64)> {
     let samples = record.connectivity.iter();
-    samples.filter_map(|sample| Some((sample.at, value(sample)?))).collect()
+    samples
+        .filter_map(|sample| Some((sample.at, value(&sample)?)))
+        .collect()
 }
 
 fn rows(table: &mut DataTable, name: &str, moments: &[Moment]) {

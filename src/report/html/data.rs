@@ -47,7 +47,7 @@ impl Spread {
 
 /// The share of `times` that were over by each time, those that were cut off counted as longer than that (Kaplan–Meier): every time if
 /// they are few, else as many as a chart can show.
-pub fn over_by(times: &[Observation]) -> Vec<[f64; 2]> {
+pub fn over_by(times: impl IntoIterator<Item = Observation>) -> Vec<[f64; 2]> {
     let steps = survival_curve(times);
     let last = steps.len().saturating_sub(1);
     let points = last.min(MOST_POINTS);
@@ -100,13 +100,13 @@ mod tests {
     #[test]
     fn few_times_have_a_point_each_many_are_thinned_and_what_was_cut_off_took_longer() {
         let seen = |time: f64, happened: bool| Observation { time, happened };
-        assert_eq!(over_by(&[seen(3.0, true), seen(1.0, true)]), [[1.0, 0.5], [3.0, 1.0]]);
+        assert_eq!(over_by([seen(3.0, true), seen(1.0, true)]), [[1.0, 0.5], [3.0, 1.0]]);
         // Of two that took longer than 2 s, one is over at 3 s: half of the half that was left.
         let cut = [seen(1.0, true), seen(1.5, true), seen(2.0, false), seen(3.0, true)];
-        assert_eq!(over_by(&cut), [[1.0, 0.25], [1.5, 0.5], [3.0, 1.0]]);
-        assert_eq!(over_by(&[seen(3.0, false)]), [[0.0; 2]; 0]);
+        assert_eq!(over_by(cut), [[1.0, 0.25], [1.5, 0.5], [3.0, 1.0]]);
+        assert_eq!(over_by([seen(3.0, false)]), [[0.0; 2]; 0]);
         let many: Vec<_> = (1..=100_000).map(|time| seen(f64::from(time), true)).collect();
-        let many = over_by(&many);
+        let many = over_by(many);
         assert_eq!(many.len(), MOST_POINTS + 1);
         assert!((many[0][0] - 1.0).abs() < 1e-12 && (many[150][1] - 0.5).abs() < 1e-4);
     }

@@ -1,5 +1,7 @@
 //! How well robots knew who had failed.
 
+use std::collections::BTreeMap;
+
 use plotly::Bar;
 use plotly::common::{LineShape, Marker, Orientation};
 use plotly::layout::HoverMode;
@@ -14,17 +16,16 @@ use crate::metrics::detection::{Cause, DetectionRecord, Verdict};
 use crate::metrics::summary::{Lasted, detection_times, mistake_durations};
 use crate::protocol::detector::DetectorConfig;
 use crate::report::number;
-use crate::statistics::{Estimate, Observation};
+use crate::statistics::{Estimate, Times};
 
 /// Suspicions by verdict and cause.
 pub fn suspicions(input: &PageInput) -> Option<Figure> {
-    let all = || input.records.iter().flat_map(|record| &record.detection.suspicions);
-    all().next()?;
-    let count = |verdict: Verdict, cause: Cause| {
-        all()
-            .filter(|one| one.verdict() == verdict && one.cause == cause)
-            .count() as u64
-    };
+    let mut counted: BTreeMap<(Verdict, Cause), u64> = BTreeMap::new();
+    for one in input.records.iter().flat_map(|record| &record.detection.suspicions) {
+        *counted.entry((one.verdict(), one.cause)).or_default() += 1;
+    }
+    counted.first_key_value()?;
+    let count = |verdict: Verdict, cause: Cause| counted.get(&(verdict, cause)).copied().unwrap_or(0);
     let mut table = DataTable::new(&["verdict", "cause", "suspicions"]);
     let names = Names::of(Verdict::ALL.map(said));
     let mut plot = stacked(axis("suspicions"), names.down());
@@ -45,7 +46,7 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
             .hover_template("%{y}: %{x}");
         plot.add_trace(bars);
     }
-    let total = all().count() as u64;
+    let total = counted.values().sum();
     Some(Figure {
         id: "suspicions".into(),
         title: "Suspicions by verdict and cause".into(),
@@ -73,12 +74,11 @@ fn said(verdict: Verdict) -> &'static str {
 
 /// How long detection took, and how long mistakes lasted.
 pub fn times(input: &PageInput) -> Option<Figure> {
-    let times = |of: fn(&DetectionRecord) -> Vec<Observation>| {
-        input
-            .records
-            .iter()
-            .flat_map(|record| of(&record.detection))
-            .collect::<Vec<_>>()
+    let times = |of: fn(&DetectionRecord) -> Times| {
+        input.records.iter().fold(Times::default(), |mut all, record| {
+            all.extend(of(&record.detection).iter());
+            all
+        })
     };
     let both = [
         (
@@ -100,7 +100,7 @@ pub fn times(input: &PageInput) -> Option<Figure> {
     let mut panels = Vec::new();
     let mut words = Vec::new();
     for (title, unit, what, colour, values) in both {
-        let curve = over_by(&values);
+        let curve = over_by(values.iter());
         if curve.is_empty() {
             continue;
         }

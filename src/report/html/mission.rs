@@ -206,7 +206,7 @@ fn curve(
     unit: &str,
     what: &str,
 ) -> Figure {
-    let steps = survival_curve(observations);
+    let steps = survival_curve(observations.iter().copied());
     let end = observations
         .iter()
         .map(|observation| observation.time)

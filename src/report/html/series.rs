@@ -96,7 +96,7 @@ fn per_step(record: &TrialRecord, bytes: impl Fn(&SeriesEntry) -> Option<f64>) -
     let entries = record.series.iter();
     let rates = entries.filter_map(|entry| {
         let steps = entry.at.since(entry.since).as_secs() / period;
-        Some((entry.at, bytes(entry)? / steps))
+        Some((entry.at, bytes(&entry)? / steps))
     });
     rates.collect()
 }

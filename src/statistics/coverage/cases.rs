@@ -149,7 +149,7 @@ fn means(cases: &mut Vec<Case>) {
 }
 
 /// Times of some mistakes, a trial having about `number` of them: exponential, cut off at a uniform end if `end` says how far that is.
-fn times(random: &mut Philox, n: usize, number: f64, end: Option<f64>) -> Vec<Vec<Observation>> {
+fn times(random: &mut Philox, n: usize, number: f64, end: Option<f64>) -> Vec<Times> {
     let time = |random: &mut Philox| {
         let (time, end) = (
             exponential(random),
@@ -167,7 +167,7 @@ fn times(random: &mut Philox, n: usize, number: f64, end: Option<f64>) -> Vec<Ve
 
 fn restricted(random: &mut Philox, n: usize, number: f64, end: Option<f64>) -> (Vec<Part>, f64) {
     let times = times(random, n, number, end);
-    let (parts, lasting) = pseudo_values(&times.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    let (parts, lasting) = pseudo_values(&times);
     let truth = lasting.restricted_to.map_or(1.0, |longest| 1.0 - f64::exp(-longest));
     (parts, truth)
 }
@@ -297,7 +297,7 @@ fn medians(cases: &mut Vec<Case>) {
             (median_survival(&times(random, n)).ci95, std::f64::consts::LN_2)
         }));
         cases.push(case("survival curve at the median", data, false, move |random, n| {
-            let curve = survival_curve(&times(random, n));
+            let curve = survival_curve(times(random, n));
             let step = curve.iter().rev().find(|step| step.time <= std::f64::consts::LN_2);
             (step.map_or([None; 2], |step| step.band.map(Some)), 0.5)
         }));

@@ -115,7 +115,7 @@ fn a_table_of_notes_is_there_only_where_robots_note_something_and_goes_with_the_
 fn a_trial_whose_file_is_damaged_runs_again() {
     let dir = tempdir().unwrap();
     interrupted(dir.path());
-    fs::write(dir.path().join(".trials/000001.json"), "{\"wall_s\":").unwrap();
+    fs::write(dir.path().join(".trials/000001.trial"), "{\"wall_s\":").unwrap();
     let parts = Parts::open(&dir.path().join(".trials")).unwrap();
     assert_eq!(parts.missing(4, 1), [1, 3]);
     assert!(matches!(parts.load(1), Err(PartsError::Damaged { .. })));
@@ -128,17 +128,22 @@ fn a_kept_trial_comes_back_bit_for_bit() {
     let parts = Parts::open(dir.path()).unwrap();
     let mut record = record(2);
     record.seed = u64::MAX;
-    record.connectivity[0].lambda2 = 0.1 + 0.2;
-    record.connectivity[1].lambda2 = f64::MIN_POSITIVE / 8.0;
-    record.connectivity[2].lambda2 = f64::MIN_POSITIVE.next_down();
-    record.trajectories[0].1[0] = [f32::MIN_POSITIVE / 8.0, 16_777_217.0_f32.sqrt()];
+    for (place, lambda2) in [0.1 + 0.2, f64::MIN_POSITIVE / 8.0, f64::MIN_POSITIVE.next_down()]
+        .into_iter()
+        .enumerate()
+    {
+        record.connectivity.change(place, |sample| sample.lambda2 = lambda2);
+    }
+    record.trajectories.change(0, |(_, places)| {
+        places[0] = [f32::MIN_POSITIVE / 8.0, 16_777_217.0_f32.sqrt()]
+    });
     record.robots[0].pose.heading = -0.0;
     record.detection.monitored_s = 1e17 / 3.0;
-    let part = FinishedTrial {
+    let mut part = FinishedTrial {
         wall_s: 1.0 / 3.0,
         record,
     };
-    parts.save(&part).unwrap();
+    parts.save(&mut part).unwrap();
     let read = parts.load(2).unwrap();
     assert_eq!(read, part);
     assert!(read.record.robots[0].pose.heading.is_sign_negative());

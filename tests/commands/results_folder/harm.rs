@@ -79,7 +79,7 @@ fn what_a_killed_attempt_left_beside_finished_results_goes_when_they_are_shown()
     let results = dir.path().join("results/missed");
     let before = tree(&results);
     fs::create_dir(results.join(".trials")).unwrap();
-    for name in ["lock", "000003.json", "report.html"] {
+    for name in ["lock", "000003.trial", "report.html"] {
         fs::write(results.join(".trials").join(name), "left").unwrap();
     }
     timed(dir.path(), &["scenario", "missed.ron"]);
@@ -102,7 +102,7 @@ fn a_kept_trial_that_has_changed_runs_again() {
         "long",
     ];
     let mut child = desim(dir.path(), &interrupted).spawn().unwrap();
-    let kept = dir.path().join("long/.trials/000000.json");
+    let kept = dir.path().join("long/.trials/000000.trial");
     while !kept.exists() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }

@@ -6,6 +6,7 @@ use std::path::Path;
 use assert_cmd::Command;
 use desim::metrics::{Outcome, Summary, TrialRecord};
 use desim::report::{PAGE_MARK, PageInput, page};
+use desim::spool::Spool;
 use tempfile::tempdir;
 
 use super::fixture::{record, scenario};
@@ -84,8 +85,8 @@ fn the_page_of_many_trials() {
 fn the_page_of_one_trial_without_mission_or_samples_has_no_empty_figures() {
     let still = TrialRecord {
         outcome: Outcome::NoMission,
-        connectivity: Vec::new(),
-        series: Vec::new(),
+        connectivity: Spool::default(),
+        series: Spool::default(),
         healing: Vec::new(),
         ..record(0)
     };

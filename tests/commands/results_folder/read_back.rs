@@ -4,8 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use desim::export::{Results, ResultsError, sealed};
+use desim::metrics::detection::Suspicion;
 use desim::metrics::{Summary, TrialRecord};
 use desim::scenario::Scenario;
+use desim::spool::Spool;
 use tempfile::{TempDir, tempdir};
 use tokio_util::sync::CancellationToken;
 
@@ -24,8 +26,9 @@ fn write(dir: &Path, scenario: &Scenario) {
 
 /// What no table holds.
 fn as_kept(mut record: TrialRecord) -> TrialRecord {
-    record.trajectories = Vec::new();
-    record.detection.suspicions.iter_mut().for_each(|one| one.sequence = 0);
+    record.trajectories = Spool::default();
+    let suspicions = record.detection.suspicions.iter();
+    record.detection.suspicions = suspicions.map(|one| Suspicion { sequence: 0, ..one }).collect();
     record
 }
 

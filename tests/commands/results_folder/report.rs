@@ -6,6 +6,7 @@ use desim::metrics::{Estimate, Outcome, Summary, TrialRecord};
 use desim::motion::Reach;
 use desim::predict::{Holds, Prediction, Surprise};
 use desim::report::{Asked, Input, Speed, terminal};
+use desim::spool::Spool;
 use desim::text::{Style, columns};
 
 use super::fixture::record;
@@ -64,7 +65,7 @@ fn the_report_of_one_trial() {
 fn the_report_without_a_mission_speaks_of_none() {
     let still = records(3).into_iter().map(|record| TrialRecord {
         outcome: Outcome::NoMission,
-        connectivity: Vec::new(),
+        connectivity: Spool::default(),
         ..record
     });
     insta::assert_snapshot!(report(&still.collect::<Vec<_>>(), Style::PLAIN));

@@ -7,10 +7,7 @@ fn robots_without_a_detector_suspect_nobody_whoever_fails_and_wake_for_no_timer(
     let faults = "faults: [Mute(robots: [3], at: 20.3), Deaf(robots: [5], at: 30.0)],";
     let without = heartbeats("None", "Bernoulli(0.5)", 1.0, 60.0, faults);
     let seen = &without.detection;
-    assert_eq!(
-        (seen.pairs, &seen.suspicions[..], &seen.failures[..]),
-        (0, &[][..], &[][..])
-    );
+    assert_eq!((seen.pairs, seen.suspicions.len(), seen.failures.len()), (0, 0, 0));
     assert!(without.ledger[0].delivered > 0 && without.faults.len() == 2);
 
     let patient = heartbeats("Timeout(1e6)", "Bernoulli(0.5)", 1.0, 60.0, faults);

@@ -15,7 +15,8 @@ fn walkers(protocol: &str, wander: &str) -> desim::metrics::TrialRecord {
 }
 
 fn way(record: &desim::metrics::TrialRecord) -> f32 {
-    let places = record.trajectories.windows(2).map(|pair| (pair[0].1[3], pair[1].1[3]));
+    let places = record.trajectories.iter().map(|(_, places)| places[3]);
+    let places = places.clone().zip(places.skip(1));
     places.map(|([x0, y0], [x1, y1])| (x1 - x0).hypot(y1 - y0)).sum()
 }
 

@@ -1,6 +1,7 @@
 //! Figures of failure detection.
 
 use super::*;
+use crate::spool::Spool;
 
 #[test]
 fn mistakes_that_were_cut_off_count_as_having_lasted_longer() {
@@ -18,8 +19,8 @@ fn mistakes_that_were_cut_off_count_as_having_lasted_longer() {
         cut_off,
     };
     let mut records = [trial(0, 8), trial(1, 6)];
-    records[0].detection.suspicions = vec![lasted(1.0, false), lasted(2.0, true)];
-    records[1].detection.suspicions = vec![lasted(4.0, false), lasted(5.0, true)];
+    records[0].detection.suspicions = [lasted(1.0, false), lasted(2.0, true)].into_iter().collect();
+    records[1].detection.suspicions = [lasted(4.0, false), lasted(5.0, true)].into_iter().collect();
     let found = Summary::of("duet", &TOPICS, &ROLES, &records)
         .detection
         .mistake_duration_s;
@@ -48,8 +49,8 @@ fn detection_figures_are_ratios_of_sums_over_trials() {
         pairs: 2,
         monitored_s: 100.0,
         mistaken_s: 4.0,
-        suspicions: vec![mistake(1.0), mistake(3.0)],
-        failures: Vec::new(),
+        suspicions: [mistake(1.0), mistake(3.0)].into_iter().collect(),
+        failures: Spool::default(),
     };
     records[1].detection.monitored_s = 60.0;
     let detection = Summary::of("duet", &TOPICS, &ROLES, &records).detection;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::metrics::figures::{Better, Figure, Sample};
+use crate::spool::Spool;
 use crate::statistics::Estimator;
 
 #[test]
@@ -16,7 +17,7 @@ fn a_figure_without_a_place_of_its_own_stands_in_the_list_and_one_that_no_trial_
 
     let mut still = trial(0, 8);
     still.outcome = Outcome::NoMission;
-    still.connectivity.clear();
+    still.connectivity = Spool::default();
     let none = Summary::of("still", &TOPICS, &ROLES, &[still]);
     assert!(none.figures.is_empty());
     assert!(serde_json::to_value(&none).unwrap().get("figures").is_none());
