@@ -13,6 +13,9 @@ pub struct MetricsConfig {
     pub sample_interval: NonNegative,
     /// Samples from one entry of the traffic's series to the next; 0 for no series.
     pub series_every: u32,
+    /// Whether to keep what passed between every two robots, for `pairs.parquet` and the figures `pairs.…`. It costs time and memory.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub pairs: bool,
     /// The older way to say `completion: Held(seconds)`, which belongs to the protocol.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "NonNegative")]
@@ -24,6 +27,7 @@ impl Default for MetricsConfig {
         Self {
             sample_interval: NonNegative::new(1.0),
             series_every: 1,
+            pairs: false,
             hold: None,
         }
     }

@@ -13,6 +13,7 @@ mod latency;
 mod mission;
 mod noted;
 mod noted_figure;
+mod pairs;
 mod record;
 mod recorder;
 mod reports;
@@ -32,6 +33,7 @@ pub use latency::LatencyHistogram;
 pub use mission::{Mission, MissionTarget};
 pub use noted::{Amount, Noted, Values};
 pub use noted_figure::NotedFigure;
+pub use pairs::{MEASURES as PAIR_MEASURES, PairMeasure, PairRecord};
 pub use record::{
     ConnectivitySample, Lists, Outcome, RobotBytes, RobotState, SeriesEntry, TargetSample, TargetState, TrialRecord,
 };

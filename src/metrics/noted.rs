@@ -54,7 +54,7 @@ pub struct Values {
 
 impl Values {
     /// A single value, which is finite.
-    fn one(value: f64) -> Self {
+    pub(super) fn one(value: f64) -> Self {
         Self {
             count: 1,
             sum: value,
@@ -93,7 +93,7 @@ impl Values {
         self
     }
 
-    fn add(&mut self, value: f64) {
+    pub(super) fn add(&mut self, value: f64) {
         self.count += 1;
         self.sum = (self.sum + value).clamp(f64::MIN, f64::MAX);
         self.min = self.min.min(value);

@@ -10,6 +10,7 @@ use super::detection::{DetectionRecord, ObservedFailure, StatusTrace, Suspicion}
 use super::episode::{FaultEpisode, HealingEpisode};
 use super::latency::LatencyHistogram;
 use super::noted::Noted;
+use super::pairs::PairRecord;
 use super::spread::RumorSpread;
 use super::volume::{TopicFates, TrafficRow};
 
@@ -49,6 +50,9 @@ pub struct TrialRecord {
     /// What robots counted and measured under names of their own, in order of names, then of robots.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub noted: Vec<Noted>,
+    /// What passed from each robot to each, by sender and receiver, where the scenario asks for it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pairs: Vec<PairRecord>,
     /// Connectivity at each sample time.
     pub connectivity: Spool<ConnectivitySample>,
     /// Traffic over time, in order of time.

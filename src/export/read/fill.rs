@@ -23,4 +23,4 @@ pub const TABLES: [(&str, Fill); 11] = [
 ];
 
 /// Tables that are there only where there is something to put into them.
-pub const OPTIONAL: [(&str, Fill); 1] = [("notes.parquet", traffic::notes)];
+pub const OPTIONAL: [(&str, Fill); 2] = [("notes.parquet", traffic::notes), ("pairs.parquet", traffic::pairs)];

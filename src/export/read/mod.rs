@@ -31,7 +31,7 @@ pub const READ: [&str; TABLES.len()] = {
 };
 
 /// Names of the tables that are read where they are there.
-pub const OPTIONAL: [&str; MAYBE.len()] = [MAYBE[0].0];
+pub const OPTIONAL: [&str; MAYBE.len()] = [MAYBE[0].0, MAYBE[1].0];
 
 /// The records that `files`, the tables of [`READ`] and [`OPTIONAL`] by name, were written from, but for their paths and the
 /// numbers of the frames that suspicions began with, which no report needs.

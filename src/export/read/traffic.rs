@@ -3,7 +3,10 @@
 use super::records::Records;
 use super::table::{Table, Wrong};
 use crate::engine::{ActorId, SimTime};
-use crate::metrics::{Amount, Noted, RobotBytes, RumorSpread, SeriesEntry, TopicFates, TrafficRow, Values, Volume};
+use crate::metrics::{
+    Amount, Noted, PAIR_MEASURES, PairRecord, RobotBytes, RumorSpread, SeriesEntry, TopicFates, TrafficRow, Values,
+    Volume,
+};
 use crate::radio::LossCause;
 
 pub fn frames(records: &mut Records, table: &Table) -> Result<(), Wrong> {
@@ -95,6 +98,25 @@ pub fn notes(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             name: name[row].clone(),
             robot: ActorId(robot[row]),
             amount,
+        });
+    }
+    Ok(())
+}
+
+pub fn pairs(records: &mut Records, table: &Table) -> Result<(), Wrong> {
+    let (trial, sender, receiver) = (table.ids("trial")?, table.ids("sender")?, table.ids("receiver")?);
+    let (offered, delivered) = (table.counts("offered")?, table.counts("delivered")?);
+    let measures = PAIR_MEASURES.iter();
+    let measures: Vec<Vec<Option<f64>>> = measures
+        .map(|measure| table.optional_numbers(measure.key))
+        .collect::<Result<_, _>>()?;
+    for row in 0..trial.len() {
+        records.of(trial[row])?.pairs.push(PairRecord {
+            sender: ActorId(sender[row]),
+            receiver: ActorId(receiver[row]),
+            offered: offered[row],
+            delivered: delivered[row],
+            values: measures.iter().map(|values| values[row]).collect(),
         });
     }
     Ok(())

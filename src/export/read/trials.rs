@@ -46,6 +46,7 @@ pub fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             healing: Vec::new(),
             spread: Vec::new(),
             noted: Vec::new(),
+            pairs: Vec::new(),
             connectivity: Spool::default(),
             series: Spool::default(),
             robots: Vec::new(),

@@ -8,6 +8,7 @@ mod frames;
 mod healing;
 mod latency;
 mod notes;
+mod pairs;
 mod robots;
 mod series;
 mod spread;
@@ -18,7 +19,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::Names;
-use super::table::Table;
+use super::table::{Column, Table};
 use crate::metrics::TrialRecord;
 
 /// The tables of a results folder being written.
@@ -36,8 +37,8 @@ pub struct Tables {
     healing: Table<healing::Row>,
     spread: Table<spread::Row>,
     series: Table<series::Row>,
-    /// Where it goes, and once there is something to put into it, the table.
-    notes: (PathBuf, Option<Table<notes::Row>>),
+    notes: Later<notes::Row>,
+    pairs: Later<pairs::Row>,
 }
 
 impl Tables {
@@ -57,7 +58,7 @@ impl Tables {
         "spread.parquet",
     ];
     /// Names of the files that are there only where there is something to put into them.
-    pub const OPTIONAL: [&str; 1] = ["notes.parquet"];
+    pub const OPTIONAL: [&str; 2] = ["notes.parquet", "pairs.parquet"];
 
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
     ///
@@ -79,7 +80,8 @@ impl Tables {
             detection: Table::create(&path(9), detection::columns())?,
             spread: Table::create(&path(11), spread::columns())?,
             series: Table::create(&path(10), series::columns())?,
-            notes: (dir.join(Self::OPTIONAL[0]), None),
+            notes: Later::new(dir, Self::OPTIONAL[0], notes::columns),
+            pairs: Later::new(dir, Self::OPTIONAL[1], pairs::columns),
         })
     }
 
@@ -100,15 +102,8 @@ impl Tables {
         self.healing.extend(healing::rows(record, &self.names))?;
         self.spread.extend(spread::rows(record))?;
         self.series.extend(series::rows(record, &self.names))?;
-        if record.noted.is_empty() {
-            return Ok(());
-        }
-        let (path, table) = &mut self.notes;
-        let table = match table {
-            Some(table) => table,
-            none => none.insert(Table::create(path, notes::columns())?),
-        };
-        table.extend(notes::rows(record))
+        self.notes.extend(notes::rows(record))?;
+        self.pairs.extend(pairs::rows(record))
     }
 
     /// Ends every file, and answers the names of those that there are.
@@ -128,11 +123,44 @@ impl Tables {
         self.healing.finish()?;
         self.spread.finish()?;
         self.series.finish()?;
-        let mut files = Self::FILES.to_vec();
-        if let (_, Some(notes)) = self.notes {
-            notes.finish()?;
-            files.push(Self::OPTIONAL[0]);
+        let later = [self.notes.finish()?, self.pairs.finish()?];
+        Ok(Self::FILES.into_iter().chain(later.into_iter().flatten()).collect())
+    }
+}
+
+/// A table that is there only where there is something to put into it.
+struct Later<R> {
+    dir: PathBuf,
+    name: &'static str,
+    columns: fn() -> Vec<Column<R>>,
+    table: Option<Table<R>>,
+}
+
+impl<R> Later<R> {
+    fn new(dir: &Path, name: &'static str, columns: fn() -> Vec<Column<R>>) -> Self {
+        Self {
+            dir: dir.to_owned(),
+            name,
+            columns,
+            table: None,
         }
-        Ok(files)
+    }
+
+    fn extend(&mut self, rows: impl Iterator<Item = R>) -> io::Result<()> {
+        let mut rows = rows.peekable();
+        if rows.peek().is_none() {
+            return Ok(());
+        }
+        let table = match &mut self.table {
+            Some(table) => table,
+            none => none.insert(Table::create(&self.dir.join(self.name), (self.columns)())?),
+        };
+        table.extend(rows)
+    }
+
+    /// Ends the file, if there is one, and answers its name.
+    fn finish(self) -> io::Result<Option<&'static str>> {
+        let Some(table) = self.table else { return Ok(None) };
+        table.finish().map(|()| Some(self.name))
     }
 }

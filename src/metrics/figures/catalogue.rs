@@ -1,7 +1,7 @@
 //! The catalogue: the figures that desim ships.
 
 use super::registry::Registry;
-use super::{bandwidth, connectivity, detection, gossip, healing, mission, radio};
+use super::{bandwidth, connectivity, detection, gossip, healing, mission, pairs, radio};
 
 impl Registry {
     /// The figures of a protocol that gives its topics these names.
@@ -15,6 +15,7 @@ impl Registry {
         detection::declare(&mut registry);
         healing::declare(&mut registry);
         gossip::declare(&mut registry, topics);
+        pairs::declare(&mut registry);
         registry
     }
 }
@@ -31,6 +32,7 @@ mod tests {
             "lambda2_min",
             "connected_share",
             "neighbours",
+            "pairs.delivery_ratio",
             "delivery_ratio",
             "detection.mistake_recurrence_s",
             "detection.query_accuracy",

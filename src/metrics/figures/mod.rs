@@ -14,6 +14,7 @@ mod figure;
 mod gossip;
 mod healing;
 mod mission;
+mod pairs;
 mod radio;
 mod registry;
 

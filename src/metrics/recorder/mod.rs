@@ -20,6 +20,7 @@ use super::healing::Healing;
 use super::latency::LatencyHistogram;
 use super::mission::{Mission, Scene};
 use super::noted::Notes;
+use super::pairs::Pairs;
 use super::record::{ConnectivitySample, Outcome, RobotState, TrialRecord};
 use super::reports::Reports;
 use super::series::Series;
@@ -98,6 +99,7 @@ pub struct Recorder {
     judge: Option<Judge>,
     spread: Spread,
     notes: Notes,
+    pairs: Option<Pairs>,
     /// How far the rumours have come, if there are any.
     everyone_knows: Option<Hearing>,
     connectivity: Spool<ConnectivitySample>,
@@ -144,6 +146,7 @@ impl Recorder {
                 .map(|mission| Judge::new(mission, completion, control_period)),
             spread: Spread::new(layout.rumors, layout.robots),
             notes: Notes::default(),
+            pairs: config.pairs.then(|| Pairs::new(layout.robots)),
             everyone_knows: (rumors > 0).then(|| Hearing::new(rumors, completion, control_period)),
             connectivity: Spool::new(&scratch),
             series: Series::new(config.series_every, &scratch),
@@ -344,6 +347,9 @@ impl Recorder {
             healing: self.healing.into_episodes(),
             spread: self.spread.into_records(),
             noted: self.notes.into_records(),
+            pairs: self
+                .pairs
+                .map_or_else(Vec::new, |pairs| pairs.into_records(end.simulated)),
             connectivity: self.connectivity,
             series: self.series.into_entries(),
             robots: robots(self.reports, end.poses, &end.robot_steps),

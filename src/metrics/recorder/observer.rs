@@ -38,6 +38,9 @@ impl Observer for Recorder {
     #[inline(always)]
     fn lost(&mut self, copy: &Copy, cause: LossCause, _: SimTime) {
         self.lost(copy.receiver, copy.topic, cause, copy.size);
+        if let Some(pairs) = &mut self.pairs {
+            pairs.lost(copy);
+        }
         if self.status == Some(copy.topic) {
             self.status_lost(copy.receiver, copy.sender, copy.sequence, cause);
         }
@@ -47,10 +50,16 @@ impl Observer for Recorder {
     #[inline(always)]
     fn delivered(&mut self, copy: &Copy, at: SimTime, _: Option<SimTime>) {
         self.delivered(copy.receiver, copy.topic, copy.size, copy.latency(at));
+        if let Some(pairs) = &mut self.pairs {
+            pairs.delivered(copy);
+        }
     }
 
     fn in_flight(&mut self, copy: &Copy, at: SimTime) {
         self.in_flight(copy.topic, copy.latency(at));
+        if let Some(pairs) = &mut self.pairs {
+            pairs.in_flight(copy);
+        }
     }
 
     fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {

@@ -1,0 +1,129 @@
+//! What passes from one robot to another, pair by pair: kept where a scenario asks for it (`metrics: (pairs: true)`), since it costs a look-up
+//! a copy and room for every two robots that ever hear each other.
+//!
+//! A measure of pairs is declared once, in [`MEASURES`]: the table of pairs has a column of it, and the summary, reports and studies its
+//! mean over pairs.
+
+use serde::{Deserialize, Serialize};
+
+use crate::engine::{ActorId, SimTime};
+use crate::happenings::Copy;
+
+use super::figures::Better;
+use super::unit::DIMENSIONLESS;
+
+/// What passed from one robot to another in a trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PairRecord {
+    /// Who sent.
+    pub sender: ActorId,
+    /// Who was to hear it.
+    pub receiver: ActorId,
+    /// Copies offered.
+    pub offered: u64,
+    /// Copies delivered by the end.
+    pub delivered: u64,
+    /// What else is measured of it, in the order of [`MEASURES`]; `None` where there is nothing to tell.
+    pub values: Vec<Option<f64>>,
+}
+
+/// What is measured of a pair.
+pub struct PairMeasure {
+    /// Its key: a column of `pairs.parquet`, and after `pairs.` that of the figure, its mean over pairs.
+    pub key: &'static str,
+    /// What reports call the figure.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Which way is better.
+    pub better: Better,
+    /// How it is read off a pair at the end of the run.
+    value: fn(&Pair) -> Option<f64>,
+}
+
+/// All measures of pairs.
+pub static MEASURES: &[PairMeasure] = &[PairMeasure {
+    key: "delivery_ratio",
+    name: "copies delivered, of a pair",
+    unit: DIMENSIONLESS,
+    better: Better::Higher,
+    value: Pair::delivery_ratio,
+}];
+
+/// A sender, at its receiver.
+#[derive(Debug, Default)]
+struct Pair {
+    delivered: u64,
+    lost: u64,
+    /// Still under way at the end.
+    in_flight: u64,
+}
+
+impl Pair {
+    /// The share of the copies that arrived of those whose fate is known.
+    fn delivery_ratio(&self) -> Option<f64> {
+        let settled = self.delivered + self.lost;
+        (settled > 0).then(|| self.delivered as f64 / settled as f64)
+    }
+}
+
+/// The pairs of a run.
+#[derive(Debug)]
+pub(super) struct Pairs {
+    /// By receiver: whom it was to hear, in order of their ids, and what came of it.
+    heard: Vec<Vec<(ActorId, Pair)>>,
+}
+
+impl Pairs {
+    /// Of robots that have heard nothing.
+    pub(super) fn new(robots: usize) -> Self {
+        Self {
+            heard: std::iter::repeat_with(Vec::new).take(robots).collect(),
+        }
+    }
+
+    /// A copy arrived.
+    pub(super) fn delivered(&mut self, copy: &Copy) {
+        self.pair(copy).delivered += 1;
+    }
+
+    /// A copy was lost.
+    pub(super) fn lost(&mut self, copy: &Copy) {
+        self.pair(copy).lost += 1;
+    }
+
+    /// A copy is still under way at the end.
+    pub(super) fn in_flight(&mut self, copy: &Copy) {
+        self.pair(copy).in_flight += 1;
+    }
+
+    fn pair(&mut self, copy: &Copy) -> &mut Pair {
+        let heard = &mut self.heard[copy.receiver.index()];
+        let place = heard.binary_search_by_key(&copy.sender, |(sender, _)| *sender);
+        let place = place.unwrap_or_else(|place| {
+            heard.insert(place, (copy.sender, Pair::default()));
+            place
+        });
+        &mut heard[place].1
+    }
+
+    /// The pairs, by sender and receiver, of a run that ended at `end`.
+    pub(super) fn into_records(self, _end: SimTime) -> Vec<PairRecord> {
+        let receivers = (0..).map(ActorId).zip(self.heard);
+        let record = |receiver: ActorId, sender: ActorId, pair: &Pair| PairRecord {
+            sender,
+            receiver,
+            offered: pair.delivered + pair.lost + pair.in_flight,
+            delivered: pair.delivered,
+            values: MEASURES.iter().map(|measure| (measure.value)(pair)).collect(),
+        };
+        let mut records: Vec<PairRecord> = receivers
+            .flat_map(|(receiver, heard)| {
+                let heard = heard.into_iter();
+                heard.map(move |(sender, pair)| record(receiver, sender, &pair))
+            })
+            .collect();
+        records.sort_unstable_by_key(|record| (record.sender, record.receiver));
+        records
+    }
+}
