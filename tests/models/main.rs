@@ -10,6 +10,7 @@ mod faults;
 mod gossip;
 mod limits;
 mod observers;
+mod pairs;
 mod phases;
 mod radio;
 mod scaling;

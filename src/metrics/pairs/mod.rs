@@ -4,13 +4,17 @@
 //! A measure of pairs is declared once, in [`MEASURES`]: the table of pairs has a column of it, and the summary, reports and studies its
 //! mean over pairs.
 
+mod age;
+
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime};
 use crate::happenings::Copy;
+use crate::protocol::Topic;
 
 use super::figures::Better;
-use super::unit::DIMENSIONLESS;
+use super::unit::{DIMENSIONLESS, SECONDS};
+use age::{Age, Ages};
 
 /// What passed from one robot to another in a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,17 +42,40 @@ pub struct PairMeasure {
     /// Which way is better.
     pub better: Better,
     /// How it is read off a pair at the end of the run.
-    value: fn(&Pair) -> Option<f64>,
+    value: fn(&Told) -> Option<f64>,
 }
 
 /// All measures of pairs.
-pub static MEASURES: &[PairMeasure] = &[PairMeasure {
-    key: "delivery_ratio",
-    name: "copies delivered, of a pair",
-    unit: DIMENSIONLESS,
-    better: Better::Higher,
-    value: Pair::delivery_ratio,
-}];
+pub static MEASURES: &[PairMeasure] = &[
+    PairMeasure {
+        key: "delivery_ratio",
+        name: "copies delivered, of a pair",
+        unit: DIMENSIONLESS,
+        better: Better::Higher,
+        value: |told| told.pair.delivery_ratio(),
+    },
+    PairMeasure {
+        key: "age_mean_s",
+        name: "age of the newest status, over time",
+        unit: SECONDS,
+        better: Better::Lower,
+        value: |told| told.ages.mean_s,
+    },
+    PairMeasure {
+        key: "age_peak_s",
+        name: "age of a status when the next arrives",
+        unit: SECONDS,
+        better: Better::Lower,
+        value: |told| told.ages.peak_s,
+    },
+    PairMeasure {
+        key: "age_p95_s",
+        name: "age of the newest status, no more 95 % of the time",
+        unit: SECONDS,
+        better: Better::Lower,
+        value: |told| told.ages.p95_s,
+    },
+];
 
 /// A sender, at its receiver.
 #[derive(Debug, Default)]
@@ -57,6 +84,14 @@ struct Pair {
     lost: u64,
     /// Still under way at the end.
     in_flight: u64,
+    /// How old the newest status is, once there is one.
+    age: Option<Age>,
+}
+
+/// A pair at the end.
+struct Told {
+    pair: Pair,
+    ages: Ages,
 }
 
 impl Pair {
@@ -72,19 +107,41 @@ impl Pair {
 pub(super) struct Pairs {
     /// By receiver: whom it was to hear, in order of their ids, and what came of it.
     heard: Vec<Vec<(ActorId, Pair)>>,
+    /// The topic of statuses.
+    status: Option<Topic>,
+    /// Statuses that nobody read before the end, with their arrivals, which are told in no order.
+    unread: Vec<(SimTime, Copy)>,
 }
 
 impl Pairs {
-    /// Of robots that have heard nothing.
-    pub(super) fn new(robots: usize) -> Self {
+    /// Of robots that have heard nothing, and send statuses on the topic `status` if they do.
+    pub(super) fn new(robots: usize, status: Option<Topic>) -> Self {
         Self {
             heard: std::iter::repeat_with(Vec::new).take(robots).collect(),
+            status,
+            unread: Vec::new(),
         }
     }
 
-    /// A copy arrived.
-    pub(super) fn delivered(&mut self, copy: &Copy) {
+    /// A copy arrived at `at`, and was read if it `is_read`: then in order of arrivals.
+    pub(super) fn delivered(&mut self, copy: &Copy, at: SimTime, is_read: bool) {
         self.pair(copy).delivered += 1;
+        if self.status != Some(copy.topic) {
+            return;
+        }
+        if is_read {
+            self.refresh(copy, at);
+        } else {
+            self.unread.push((at, *copy));
+        }
+    }
+
+    fn refresh(&mut self, status: &Copy, at: SimTime) {
+        let age = &mut self.pair(status).age;
+        match age {
+            Some(age) => age.arrived(status.sent_at, at),
+            none => *none = Some(Age::since(status.sent_at, at)),
+        }
     }
 
     /// A copy was lost.
@@ -108,19 +165,26 @@ impl Pairs {
     }
 
     /// The pairs, by sender and receiver, of a run that ended at `end`.
-    pub(super) fn into_records(self, _end: SimTime) -> Vec<PairRecord> {
+    pub(super) fn into_records(mut self, end: SimTime) -> Vec<PairRecord> {
+        let mut unread = std::mem::take(&mut self.unread);
+        unread.sort_by_key(|(at, _)| *at);
+        unread.iter().for_each(|(at, copy)| self.refresh(copy, *at));
         let receivers = (0..).map(ActorId).zip(self.heard);
-        let record = |receiver: ActorId, sender: ActorId, pair: &Pair| PairRecord {
-            sender,
-            receiver,
-            offered: pair.delivered + pair.lost + pair.in_flight,
-            delivered: pair.delivered,
-            values: MEASURES.iter().map(|measure| (measure.value)(pair)).collect(),
+        let record = move |receiver: ActorId, sender: ActorId, mut pair: Pair| {
+            let ages = pair.age.take().map_or_else(Ages::default, |age| age.told(end));
+            let told = Told { pair, ages };
+            PairRecord {
+                sender,
+                receiver,
+                offered: told.pair.delivered + told.pair.lost + told.pair.in_flight,
+                delivered: told.pair.delivered,
+                values: MEASURES.iter().map(|measure| (measure.value)(&told)).collect(),
+            }
         };
         let mut records: Vec<PairRecord> = receivers
             .flat_map(|(receiver, heard)| {
                 let heard = heard.into_iter();
-                heard.map(move |(sender, pair)| record(receiver, sender, &pair))
+                heard.map(move |(sender, pair)| record(receiver, sender, pair))
             })
             .collect();
         records.sort_unstable_by_key(|record| (record.sender, record.receiver));

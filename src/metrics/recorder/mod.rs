@@ -146,7 +146,7 @@ impl Recorder {
                 .map(|mission| Judge::new(mission, completion, control_period)),
             spread: Spread::new(layout.rumors, layout.robots),
             notes: Notes::default(),
-            pairs: config.pairs.then(|| Pairs::new(layout.robots)),
+            pairs: config.pairs.then(|| Pairs::new(layout.robots, layout.status)),
             everyone_knows: (rumors > 0).then(|| Hearing::new(rumors, completion, control_period)),
             connectivity: Spool::new(&scratch),
             series: Series::new(config.series_every, &scratch),

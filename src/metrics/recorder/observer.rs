@@ -48,10 +48,10 @@ impl Observer for Recorder {
 
     #[allow(clippy::inline_always)]
     #[inline(always)]
-    fn delivered(&mut self, copy: &Copy, at: SimTime, _: Option<SimTime>) {
+    fn delivered(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {
         self.delivered(copy.receiver, copy.topic, copy.size, copy.latency(at));
         if let Some(pairs) = &mut self.pairs {
-            pairs.delivered(copy);
+            pairs.delivered(copy, at, read.is_some());
         }
     }
 
