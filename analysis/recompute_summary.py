@@ -540,9 +540,30 @@ class Folder:
         found = {
             "completion_s": {**mean([seconds for seconds, _ in times], "count"), **({"cut_off": cut_off} if cut_off else {})},
             "neighbours": mean(list(in_range), "mean"),
+            "spread.hops": ratio([self.hops(trial) for trial in self.trials["trial"]], "mean"),
+            **self.pairs(),
         }
         known = {key: figure for key, figure in found.items() if figure["value"] is not None}
         return {"figures": known} if known else {}
+
+
+    def hops(self, trial):
+        """The hops that rumours came over to robots that had them from others in a trial, and how many these are."""
+        hops = self.rumors.filter(pl.col("trial") == trial, pl.col("hops") > 0)["hops"]
+        return hops.sum(), len(hops)
+
+    def pairs(self):
+        """Every measure of pairs: the mean over the pairs of a trial, and over trials."""
+        if not (self.path / "pairs.parquet").exists():
+            return {}
+        pairs = self.table("pairs")
+        measures = [name for name in pairs.columns if name not in ("trial", "sender", "receiver", "offered", "delivered")]
+
+        def of(trial, measure):
+            values = pairs.filter(trial=trial)[measure].drop_nulls()
+            return math.fsum(values) / len(values) if len(values) else None
+
+        return {f"pairs.{measure}": mean([of(trial, measure) for trial in self.trials["trial"]], "mean") for measure in measures}
 
 
 def miss(rows, end, k):

@@ -3,7 +3,9 @@
 //! All tasks live on the caller's thread. A simulated instant has one order of events, so threads inside a run
 //! would only wait for each other; trials are what runs in parallel.
 
+use std::pin::Pin;
 use std::rc::Rc;
+use std::task::{Context, Poll};
 
 use tokio::task::{JoinHandle, spawn_local};
 
@@ -36,8 +38,12 @@ where
         let answers = Rc::new(Desk::default());
         let spawn = |process| {
             let mailbox = Rc::new(Mailbox::default());
-            let task = spawn_local(live(process, Rc::clone(&mailbox), Rc::clone(&answers)));
-            (mailbox, task)
+            let life = Life {
+                process: Some(process),
+                mailbox: Rc::clone(&mailbox),
+                answers: Rc::clone(&answers),
+            };
+            (mailbox, spawn_local(life))
         };
         let (mailboxes, tasks) = processes.into_iter().map(spawn).unzip();
         Self {
@@ -48,14 +54,39 @@ where
     }
 }
 
-/// An actor's life: it reads its mail and answers it until there will be no more.
-async fn live<P: Process>(mut process: P, mailbox: Rc<Mailbox<Mail<P>>>, answers: Rc<Desk<Box<JobOf<P>>>>) -> P {
-    let _notice = answers.notice_of_panic();
-    while let Some((slot, mut job)) = mailbox.next(|| answers.is_closed()).await {
-        process.handle(job.now, &mut job.input, &mut job.output);
-        answers.put(slot, job);
+/// An actor's life: it reads its mail and answers it until there will be no more. A future by hand: one that the compiler makes of a function
+/// holds the process twice, and the state of a swarm is what its memory is read for.
+struct Life<P: Process> {
+    /// There until the end.
+    process: Option<P>,
+    mailbox: Rc<Mailbox<Mail<P>>>,
+    answers: Rc<Desk<Box<JobOf<P>>>>,
+}
+
+/// Nothing in it points into it.
+impl<P: Process> Unpin for Life<P> {}
+
+impl<P: Process> Future for Life<P> {
+    type Output = P;
+
+    fn poll(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<P> {
+        let Self {
+            process,
+            mailbox,
+            answers,
+        } = self.get_mut();
+        let _notice = answers.notice_of_panic();
+        while let Some((slot, mut job)) = mailbox.take() {
+            if let Some(process) = process {
+                process.handle(job.now, &mut job.input, &mut job.output);
+            }
+            answers.put(slot, job);
+        }
+        match process {
+            ended if answers.is_closed() => ended.take().map_or(Poll::Pending, Poll::Ready),
+            _ => mailbox.wait(context),
+        }
     }
-    process
 }
 
 impl<P: Process> Driver<P> for Actors<P> {

@@ -6,7 +6,6 @@
 
 use std::cell::{Cell, RefCell};
 use std::future::poll_fn;
-use std::rc::Rc;
 use std::task::{Context, Poll, Waker};
 
 /// Room for one letter, and for the task that waits for it.
@@ -37,14 +36,14 @@ impl<L> Mailbox<L> {
         self.reader.ring();
     }
 
-    /// The next letter; `None` once there is none left and the post has `closed`.
-    pub async fn next(&self, closed: impl Fn() -> bool) -> Option<L> {
-        poll_fn(|context| match self.letter.take() {
-            Some(letter) => Poll::Ready(Some(letter)),
-            None if closed() => Poll::Ready(None),
-            None => self.reader.wait(context),
-        })
-        .await
+    /// Takes out the letter, if there is one.
+    pub fn take(&self) -> Option<L> {
+        self.letter.take()
+    }
+
+    /// Has the present task woken by the next letter.
+    pub fn wait<T>(&self, context: &Context<'_>) -> Poll<T> {
+        self.reader.wait(context)
     }
 }
 
@@ -118,15 +117,15 @@ impl<A> Desk<A> {
     }
 
     /// What a task that answers here holds, so that nobody waits for it if it panics.
-    pub fn notice_of_panic(self: &Rc<Self>) -> NoticeOfPanic<A> {
-        NoticeOfPanic(Rc::clone(self))
+    pub fn notice_of_panic(&self) -> NoticeOfPanic<'_, A> {
+        NoticeOfPanic(self)
     }
 }
 
 /// Tells the desk if it is dropped in a panic.
-pub struct NoticeOfPanic<A>(Rc<Desk<A>>);
+pub struct NoticeOfPanic<'a, A>(&'a Desk<A>);
 
-impl<A> Drop for NoticeOfPanic<A> {
+impl<A> Drop for NoticeOfPanic<'_, A> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             self.0.panicked.set(true);

@@ -234,7 +234,7 @@ mod tests {
         let mut now = Hearing::new(2, CompletionConfig::Reached, STEP);
         let mut each = Hearing::new(2, CompletionConfig::EachVisited, STEP);
         for robot in 0..4 {
-            spread.inform(ActorId(robot), 0, SimTime::ZERO);
+            spread.inform(ActorId(robot), 0, SimTime::ZERO, None);
         }
         assert_eq!(now.observe(0, &spread, &stage.failures), Progress::Underway);
         assert_eq!(each.observe(0, &spread, &stage.failures), Progress::Underway);
@@ -251,7 +251,7 @@ mod tests {
         );
         let mut stage = Stage::new();
         (1..4).for_each(|robot| stage.silence(robot));
-        spread.inform(ActorId(0), 1, SimTime::ZERO);
+        spread.inform(ActorId(0), 1, SimTime::ZERO, None);
         assert_eq!(
             now.observe(2, &spread, &stage.failures),
             Progress::Complete { since: 2 }

@@ -11,6 +11,8 @@ use super::faults::Failures;
 pub struct RumorSpread {
     /// When each robot came to know it, in order of ids; `None` if it never did.
     pub informed: Vec<Option<SimTime>>,
+    /// How many transmissions it had come over by then, in order of ids: 0 where it began; `None` where it never came.
+    pub hops: Vec<Option<u32>>,
 }
 
 /// Follows the rumours of a run.
@@ -22,19 +24,25 @@ impl Spread {
     pub(super) fn new(rumors: usize, robots: usize) -> Self {
         let unknown = RumorSpread {
             informed: vec![None; robots],
+            hops: vec![None; robots],
         };
         Self(vec![unknown; rumors])
     }
 
-    /// `robot` knows `rumor` since `at`.
+    /// `robot` knows `rumor` since `at`, and has it `from` another robot, if it did not begin there.
     ///
     /// # Panics
     /// If the run has no such rumour.
-    pub(super) fn inform(&mut self, robot: ActorId, rumor: u16, at: SimTime) {
+    pub(super) fn inform(&mut self, robot: ActorId, rumor: u16, at: SimTime, from: Option<ActorId>) {
         let rumors = self.0.len();
         let spread = self.0.get_mut(usize::from(rumor));
         let spread = spread.unwrap_or_else(|| panic!("robot {robot} reported rumour {rumor}, one of {rumors}"));
-        spread.informed[robot.index()].get_or_insert(at);
+        if spread.informed[robot.index()].is_none() {
+            spread.informed[robot.index()] = Some(at);
+            // Who tells it knows it: 0 hops more than none that were ever told of it.
+            let before = from.map(|from| spread.hops[from.index()].unwrap_or(0));
+            spread.hops[robot.index()] = Some(before.map_or(0, |hops| hops + 1));
+        }
     }
 
     /// Whether every live robot knows every rumour, and there is one.
@@ -51,5 +59,32 @@ impl Spread {
 
     pub(super) fn into_records(self) -> Vec<RumorSpread> {
         self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rumour_comes_over_one_hop_more_than_to_whom_it_came_from_and_the_first_way_counts() {
+        let mut spread = Spread::new(1, 5);
+        let mut inform = |robot: u32, from: Option<u32>| {
+            spread.inform(
+                ActorId(robot),
+                0,
+                SimTime::from_secs(f64::from(robot)),
+                from.map(ActorId),
+            );
+        };
+        inform(2, None);
+        inform(0, Some(2));
+        inform(1, Some(0));
+        inform(1, Some(2));
+        inform(3, Some(2));
+        let [rumor] = &spread.into_records()[..] else {
+            panic!("one rumour")
+        };
+        assert_eq!(rumor.hops, [Some(1), Some(2), Some(0), Some(1), None]);
     }
 }

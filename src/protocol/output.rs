@@ -157,6 +157,8 @@ pub enum Note {
         rumor: u16,
         /// When it arrived, or was begun here.
         at: SimTime,
+        /// Whom it heard it from; `None` if it was begun here.
+        from: Option<ActorId>,
     },
     /// Something happened `n` times more ([`Output::count`]).
     Count {

@@ -124,7 +124,7 @@ pub fn pairs(records: &mut Records, table: &Table) -> Result<(), Wrong> {
 
 pub fn spread(records: &mut Records, table: &Table) -> Result<(), Wrong> {
     let (trial, rumor) = (table.ids("trial")?, table.ids("rumor")?);
-    let informed = table.optional_numbers("informed_s")?;
+    let (informed, hops) = (table.optional_numbers("informed_s")?, table.optional_ids("hops")?);
     for row in 0..trial.len() {
         let rumors = &mut records.of(trial[row])?.spread;
         // Rows of one rumour follow each other, robot by robot.
@@ -133,6 +133,7 @@ pub fn spread(records: &mut Records, table: &Table) -> Result<(), Wrong> {
         }
         if let Some(last) = rumors.last_mut() {
             last.informed.push(informed[row].map(SimTime::from_secs));
+            last.hops.push(hops[row]);
         }
     }
     Ok(())

@@ -10,15 +10,18 @@ pub struct Row {
     rumor: u32,
     robot: u32,
     informed: Option<SimTime>,
+    hops: Option<u32>,
 }
 
 pub fn rows(record: &TrialRecord) -> impl Iterator<Item = Row> {
     (0..).zip(&record.spread).flat_map(move |(rumor, spread)| {
-        (0..).zip(&spread.informed).map(move |(robot, &informed)| Row {
+        let told = spread.informed.iter().zip(&spread.hops);
+        (0..).zip(told).map(move |(robot, (&informed, &hops))| Row {
             trial: record.trial,
             rumor,
             robot,
             informed,
+            hops,
         })
     })
 }
@@ -31,5 +34,6 @@ pub fn columns() -> Vec<Column<Row>> {
         Col::id("rumor", |row| row.rumor),
         Col::id("robot", |row| row.robot),
         Col::optional_f64("informed_s", |row| row.informed.map(SimTime::as_secs)),
+        Col::optional_id("hops", |row| row.hops),
     ]
 }

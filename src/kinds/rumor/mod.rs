@@ -138,7 +138,7 @@ impl Rumor {
                 if self.knows(rumor) {
                     output.notes.push(reception.duplicate(RUMOR));
                 } else {
-                    self.learn(rumor, reception.at, &mut output.notes);
+                    self.learn(rumor, reception.at, Some(reception.frame.sender), &mut output.notes);
                 }
             }
             Message::Request { to, known } if is_for_me(to) => {
@@ -159,11 +159,12 @@ impl Rumor {
         self.known & (1 << rumor) != 0
     }
 
-    fn learn(&mut self, rumor: u8, at: SimTime, notes: &mut Vec<Note>) {
+    fn learn(&mut self, rumor: u8, at: SimTime, from: Option<ActorId>, notes: &mut Vec<Note>) {
         self.known |= 1 << rumor;
         notes.push(Note::Informed {
             rumor: rumor.into(),
             at,
+            from,
         });
     }
 
@@ -172,7 +173,7 @@ impl Rumor {
         let settings = Rc::clone(&self.settings);
         for (rumor, source) in (0..).zip(&settings.sources) {
             if *source == self.id {
-                self.learn(rumor, now, notes);
+                self.learn(rumor, now, None, notes);
             }
         }
     }

@@ -59,10 +59,11 @@ fn step(robot: &mut Rumor, step: u64, heard: &[(u32, Message)]) -> Output<Messag
     output
 }
 
-fn informed(rumor: u16, at: u64) -> Note {
+fn informed(rumor: u16, at: u64, from: Option<u32>) -> Note {
     Note::Informed {
         rumor,
         at: SimTime::ZERO + PERIOD * at,
+        from: from.map(ActorId),
     }
 }
 
@@ -70,7 +71,7 @@ fn informed(rumor: u16, at: u64) -> Note {
 fn a_source_knows_its_rumours_from_its_first_step_and_pushes_them_every_round() {
     let mut source = robots(Mode::Push, RelayConfig::default()).remove(0);
     let first = step(&mut source, 0, &[]);
-    assert_eq!(first.notes, [informed(0, 0), informed(1, 0)]);
+    assert_eq!(first.notes, [informed(0, 0, None), informed(1, 0, None)]);
     assert_eq!(first.broadcasts, [rumor(None, 0), rumor(None, 1)]);
     let sent: Vec<usize> = (1..21).map(|n| step(&mut source, n, &[]).broadcasts.len()).collect();
     assert_eq!(sent.iter().sum::<usize>(), 4, "a round every ten control steps");
@@ -84,9 +85,12 @@ fn a_rumour_is_learnt_once_heard_again_it_is_a_duplicate_and_all_make_a_robot_in
         topic: Topic(0),
         size: MessageSize::alone(36),
     };
-    assert_eq!(step(&mut robot, 0, &heard).notes, [informed(0, 0), duplicate]);
+    assert_eq!(step(&mut robot, 0, &heard).notes, [informed(0, 0, Some(0)), duplicate]);
     let rest = step(&mut robot, 1, &[(0, rumor(None, 1)), (3, rumor(None, 2))]);
-    assert_eq!(rest.notes, [informed(1, 1), informed(2, 1), Note::Role(Role(1))]);
+    assert_eq!(
+        rest.notes,
+        [informed(1, 1, Some(0)), informed(2, 1, Some(3)), Note::Role(Role(1))]
+    );
 }
 
 #[test]

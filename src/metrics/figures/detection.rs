@@ -55,11 +55,13 @@ pub fn detection_times(trial: &DetectionRecord) -> Times {
 /// How long each mistake lasted until trust, or until it was cut off.
 #[must_use]
 pub fn mistake_durations(trial: &DetectionRecord) -> Times {
-    let durations = trial.suspicions.iter().filter_map(|suspicion| {
+    // There may be millions: no more room than they need.
+    let mut durations = Times::with_capacity(trial.suspicions.len());
+    durations.extend(trial.suspicions.iter().filter_map(|suspicion| {
         Some(Observation {
             time: suspicion.duration?.as_secs(),
             happened: !suspicion.cut_off,
         })
-    });
-    durations.collect()
+    }));
+    durations
 }

@@ -16,6 +16,10 @@ pub(super) fn declare(registry: &mut Registry, topics: &[&str]) {
         more,
         informed_ratio,
     );
+    let hops = ("hops", Better::Lower, Estimator::Mean);
+    registry
+        .add_ratio("spread.hops", "hops that a rumour came over", hops, hops_of)
+        .list();
     let less = (DIMENSIONLESS, Better::Lower, Estimator::ShareOf);
     registry.add_ratio("duplicates", "duplicates in messages delivered", less, |record| {
         duplicates(record, |_| true)
@@ -69,6 +73,13 @@ impl Pairs {
 /// are well.
 fn informed_ratio(record: &TrialRecord) -> Option<f64> {
     Pairs::of(record).map(|pairs| pairs.informed_ratio())
+}
+
+/// The hops that the rumours of a trial came over to the robots that had them from others, all together, and how many these are.
+fn hops_of(record: &TrialRecord) -> Part {
+    let hops = record.spread.iter().flat_map(|rumor| rumor.hops.iter().flatten());
+    let told: Vec<f64> = hops.filter(|hops| **hops > 0).map(|hops| f64::from(*hops)).collect();
+    [told.iter().sum(), told.len() as f64]
 }
 
 /// Duplicates in a trial and messages delivered, of the rows of traffic that `counts` accepts.

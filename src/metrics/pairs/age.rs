@@ -99,6 +99,9 @@ fn quantile(from: &Values, to: &Values, q: f64) -> Option<f64> {
     let mut turns = [turns(from, 1.0), turns(to, -1.0)].concat();
     turns.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = turns.iter().map(|(age, pace)| -age * pace).sum();
+    if total <= 0.0 {
+        return None;
+    }
     let (mut below, mut pace, mut reached) = (0.0, 0.0, 0.0);
     for (age, change) in turns {
         let next = below + pace * (age - reached);
@@ -107,7 +110,7 @@ fn quantile(from: &Values, to: &Values, q: f64) -> Option<f64> {
         }
         (below, pace, reached) = (next, pace + change, age);
     }
-    (total > 0.0).then_some(reached)
+    Some(reached)
 }
 
 /// The middle of a bucket whose end nearer to zero is this.

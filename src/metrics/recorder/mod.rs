@@ -202,7 +202,7 @@ impl Recorder {
         match *note {
             Note::Role(role) => self.traffic.enter(robot, role),
             Note::Duplicate { topic, size } => self.traffic.duplicate(robot, topic, size),
-            Note::Informed { rumor, at } => self.spread.inform(robot, rumor, at),
+            Note::Informed { rumor, at, from } => self.spread.inform(robot, rumor, at, from),
             Note::Count { name, n } => self.notes.count(robot, name, n),
             Note::Value { name, value } => self.notes.value(robot, name, value),
             _ => {}

@@ -313,6 +313,7 @@ fn who_is_down_at_the_end_is_no_robot_that_a_rumour_should_have_reached() {
     let at = |seconds: f64| Some(SimTime::from_secs(seconds));
     record.spread = vec![RumorSpread {
         informed: vec![at(0.25), None],
+        hops: vec![Some(0), None],
     }];
     let fault = |until| FaultEpisode {
         fault: 0,

@@ -64,6 +64,11 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Pairs of robots of which the scenario wants to know what passes between them.
+    pub fn between(&self) -> f64 {
+        if self.scenario.metrics.pairs { self.pairs } else { 0.0 }
+    }
+
     fn moves(&self) -> bool {
         self.scenario.moves()
     }

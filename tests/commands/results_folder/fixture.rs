@@ -10,9 +10,9 @@ use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
 use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
 use desim::metrics::{
-    Amount, ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Noted, Outcome, RobotBytes,
-    RobotState, RumorSpread, SeriesEntry, TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Values,
-    Volume,
+    Amount, ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Noted, Outcome,
+    PAIR_MEASURES, PairRecord, RobotBytes, RobotState, RumorSpread, SeriesEntry, TargetSample, TargetState, TopicFates,
+    TrafficRow, TrialRecord, Values, Volume,
 };
 use desim::radio::LossCause;
 use desim::scenario::{Scenario, parse};
@@ -60,6 +60,7 @@ pub fn record(trial: u32) -> TrialRecord {
         healing: healing(trial),
         spread: spread(trial),
         noted: noted(trial),
+        pairs: pairs(trial),
         detection: detection(trial),
         trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
@@ -225,6 +226,27 @@ fn spread(trial: u32) -> Vec<RumorSpread> {
     (0..2)
         .map(|rumor| RumorSpread {
             informed: informed(rumor),
+            hops: (0..ROBOTS)
+                .map(|robot| reaches(rumor, robot).then_some(robot % 3))
+                .collect(),
+        })
+        .collect()
+}
+
+/// Each robot and the next, of whose measures the second trial lacks some.
+fn pairs(trial: u32) -> Vec<PairRecord> {
+    let value = |robot: u32, place: usize| f64::from(robot * 3 + trial + 1) / (place as f64 + 7.0);
+    let values = |robot: u32| {
+        let places = 0..PAIR_MEASURES.len();
+        places.map(move |place| (trial != 1 || place != 2).then(|| value(robot, place)))
+    };
+    (0..ROBOTS - 1)
+        .map(|robot| PairRecord {
+            sender: ActorId(robot),
+            receiver: ActorId(robot + 1),
+            offered: u64::from(100 + robot),
+            delivered: u64::from(80 + trial),
+            values: values(robot).collect(),
         })
         .collect()
 }

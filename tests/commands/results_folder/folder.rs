@@ -84,6 +84,7 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
         "healing.parquet",
         "latency.parquet",
         "notes.parquet",
+        "pairs.parquet",
         "robots.parquet",
         "series.parquet",
         "spread.parquet",
