@@ -1,9 +1,10 @@
-//! Where frames wait for their receiver: a copy goes straight here, not through the event queue.
+//! Where copies of frames wait for their fate and for their receiver: they go straight here, not through the event queue.
 
 use std::cmp::Ordering;
 
 use crate::engine::{SimTime, prefetch_all, prefetch_end};
-use crate::protocol::Reception;
+use crate::protocol::{Frame, Reception};
+use crate::radio::FrameId;
 
 /// Frames on their way to one robot, and those that arrived since it last woke. Aligned so that none lies across two cache
 /// lines: every copy of every frame reads one.
@@ -36,7 +37,7 @@ impl<M> Inbox<M> {
         prefetch_all(&self.waiting);
     }
 
-    /// Takes in a frame that will arrive at `reception.at`.
+    /// Takes in a frame that will arrive at `reception.at`; `NEVER` if its fate is open.
     #[inline]
     pub fn push(&mut self, reception: Reception<M>) {
         self.latest = self.latest.max(reception.at);
@@ -48,10 +49,11 @@ impl<M> Inbox<M> {
         std::mem::swap(&mut self.waiting, arrived);
         if self.latest > now {
             // Few are still under way when a robot wakes: they go back.
+            self.latest = SimTime::ZERO;
             let mut next = 0;
             while let Some(reception) = arrived.get(next) {
                 if reception.at > now {
-                    self.waiting.push(arrived.swap_remove(next));
+                    self.push(arrived.swap_remove(next));
                 } else {
                     next += 1;
                 }
@@ -60,13 +62,46 @@ impl<M> Inbox<M> {
         arrived.sort_unstable_by(arrival_order);
     }
 
+    /// What is open of `frame` arrives at `at`, with its sender at `displacement`; `tell` is called with each message. Whether anything was open.
+    pub fn arrive(
+        &mut self,
+        frame: FrameId,
+        at: SimTime,
+        displacement: [f32; 2],
+        mut tell: impl FnMut(&Frame<M>),
+    ) -> bool {
+        // It came lately, and is looked for from the end on.
+        let open = self.waiting.iter_mut().rev().filter(|copy| is_open(copy, frame));
+        let mut found = false;
+        for reception in open.take(frame.messages() as usize) {
+            reception.at = at;
+            reception.displacement = displacement;
+            tell(&reception.frame);
+            found = true;
+        }
+        found
+    }
+
+    /// What is open of `frame` is lost: `lose` is called with each message. Whether anything was open.
+    pub fn lose(&mut self, frame: FrameId, mut lose: impl FnMut(Reception<M>)) -> bool {
+        let mut found = false;
+        for _ in 0..frame.messages() {
+            let Some(place) = self.waiting.iter().rposition(|copy| is_open(copy, frame)) else {
+                break;
+            };
+            lose(self.waiting.swap_remove(place));
+            found = true;
+        }
+        found
+    }
+
     /// Takes out what arrives within `from..until`, and calls `lose` with each.
     pub fn drop_arrivals(&mut self, from: SimTime, until: SimTime, lose: impl FnMut(Reception<M>)) {
         let lost = |reception: &mut Reception<M>| (from..until).contains(&reception.at);
         self.waiting.extract_if(.., lost).for_each(lose);
     }
 
-    /// The earliest arrival still waiting.
+    /// The earliest arrival still waiting; `NEVER` if the fate of all is open.
     pub fn next_arrival(&self) -> Option<SimTime> {
         self.waiting.iter().map(|reception| reception.at).min()
     }
@@ -75,6 +110,10 @@ impl<M> Inbox<M> {
     pub fn waiting(&self) -> &[Reception<M>] {
         &self.waiting
     }
+}
+
+fn is_open<M>(reception: &Reception<M>, frame: FrameId) -> bool {
+    reception.at == SimTime::NEVER && frame.holds(reception.frame.sender, reception.frame.sequence)
 }
 
 fn arrival_order<M>(a: &Reception<M>, b: &Reception<M>) -> Ordering {

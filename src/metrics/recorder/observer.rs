@@ -49,8 +49,8 @@ impl Observer for Recorder {
         self.delivered(copy.receiver, copy.topic, copy.size, copy.latency(at));
     }
 
-    fn in_flight(&mut self, copy: &Copy, at: SimTime) {
-        self.in_flight(copy.topic, copy.latency(at));
+    fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
+        self.in_flight(copy.topic, at.map(|at| copy.latency(at)));
     }
 
     fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {
