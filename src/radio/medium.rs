@@ -91,7 +91,7 @@ pub trait RadioKind: Debug + Send + Sync {
 ///
 /// # Where everybody is
 /// A frame comes with its listeners and their places as they are when it is handed over, and its fate is decided by these:
-/// robots go less than a centimetre while a frame of some milliseconds lasts.
+/// robots go less than a centimetre while a frame of some milliseconds lasts. What jams whom follows from places too, not from who is offered what.
 ///
 /// # Order
 /// At one instant the medium is advanced behind faults and before robots wake, so that a robot which wakes at t reads what has arrived at t.
@@ -242,6 +242,18 @@ impl Fates {
             Fate::Lost(cause) => self.losses.push((receiver, cause)),
             Fate::Open => self.open.push(receiver),
         }
+    }
+
+    /// Of how many copies it holds the fate.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.arrivals.len() + self.losses.len() + self.open.len()
+    }
+
+    /// Whether it holds no fate.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     /// Takes out what is in it: first what arrives, then what is lost, then what is open, each in the order in which it was put in.

@@ -145,6 +145,56 @@ mod tests {
         }
     }
 
+    /// Two messages of robot 1 in one frame and one of robot 2 are open beside one that has arrived.
+    #[test]
+    fn an_open_copy_waits_until_its_frame_arrives_or_is_lost() {
+        const OPEN: u64 = u64::MAX;
+        let frame = FrameId::with_messages(ActorId(1), 3, 7, 2);
+        let fresh = || {
+            let mut inbox = Inbox::default();
+            let copies = [(OPEN, 1, 7), (OPEN, 1, 8), (OPEN, 2, 7), (5, 1, 6)];
+            for (at, sender, sequence) in copies {
+                inbox.push(reception(at, sender, sequence));
+            }
+            inbox
+        };
+        let read = |inbox: &mut Inbox<()>, now| {
+            let mut arrived = Vec::new();
+            inbox.take_arrived(SimTime::from_nanos(now), &mut arrived);
+            arrived
+                .iter()
+                .map(|copy| (copy.frame.sender.0, copy.frame.sequence))
+                .collect::<Vec<_>>()
+        };
+
+        let mut inbox = fresh();
+        assert_eq!(inbox.next_arrival(), Some(SimTime::from_nanos(5)));
+        for (now, arrived) in [(9, vec![(1, 6)]), (10, vec![]), (10, vec![])] {
+            assert_eq!(read(&mut inbox, now), arrived);
+        }
+        let mut told = Vec::new();
+        let at = SimTime::from_nanos(20);
+        assert!(inbox.arrive(frame, at, [0.0, 2.0], |frame| told.push(frame.sequence)));
+        told.sort_unstable();
+        assert_eq!(told, [7, 8]);
+        assert!(!inbox.arrive(frame, at, [0.0; 2], |_| ()), "it is not open any more");
+        assert!(!inbox.lose(frame, |_| ()));
+        let displaced = inbox.waiting().iter().filter(|copy| copy.displacement()[1] > 1.0);
+        assert_eq!(displaced.count(), 2);
+        assert_eq!(read(&mut inbox, 19), []);
+        assert_eq!(read(&mut inbox, 20), [(1, 7), (1, 8)]);
+        assert_eq!(inbox.waiting().len(), 1);
+
+        let mut inbox = fresh();
+        let mut lost = Vec::new();
+        assert!(inbox.lose(frame, |copy| lost.push(copy.frame.sequence)));
+        lost.sort_unstable();
+        assert_eq!(lost, [7, 8]);
+        assert!(!inbox.lose(FrameId::new(ActorId(1), 6), |_| ()), "that one has arrived");
+        assert_eq!(read(&mut inbox, 20), [(1, 6)]);
+        assert_eq!(inbox.waiting().len(), 1);
+    }
+
     proptest! {
         #[test]
         fn every_frame_is_read_once_by_the_first_wake_at_or_after_its_arrival_and_in_order(

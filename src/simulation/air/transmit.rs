@@ -162,6 +162,7 @@ impl<P: Protocol> Air<P> {
             },
         };
         self.medium.transmit(&frame, &mut self.fates);
+        debug_assert_eq!(self.fates.len(), self.listeners.len(), "each listener has one fate");
         if self.prefetches {
             self.prefetch_fates(P::topic(aboard[0].frame.message.borrow()), observer);
         }

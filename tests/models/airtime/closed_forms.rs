@@ -62,7 +62,7 @@ fn frames_of_poisson_senders_are_received_as_often_as_in_pure_aloha() {
         let record = run(&setup(seconds, radio), poses, senders, DriverKind::Inline).record;
         let fates = &record.ledger[0];
         let frames = fates.offered as f64 / (robots - 1) as f64;
-        let expected = ((1.0 - load) * (-load).exp()).powi(robots as i32 - 1);
+        let expected = ((1.0 - load) * (-load).exp()).powf((robots - 1) as f64);
         let q = (-load * robots as f64).exp();
         let variance = (q * q * (1.0 - q * q) + 2.0 * (q.powi(3) - q.powi(4))) / frames;
         let received = fates.delivered as f64 / fates.offered as f64;

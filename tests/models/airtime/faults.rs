@@ -1,9 +1,12 @@
 //! Robots and links that fail while a frame is on air, and the books whatever happens.
 
+use desim::engine::SimTime;
+use desim::metrics::TopicFates;
 use desim::protocol::control::{PhaseConfig, WakeConfig};
 use desim::radio::LossCause;
-use desim::simulation::{DriverKind, Setup};
+use desim::simulation::{Copy, DriverKind, Observer, Setup};
 use proptest::prelude::*;
+use tokio_util::sync::CancellationToken;
 
 use super::aloha::Aloha;
 use super::{Scripted, chatters, line, run, setup};
@@ -99,6 +102,26 @@ fn a_frame_whose_sender_falls_silent_in_the_middle_of_it_is_lost_and_jams_nobody
     assert_eq!(heard_of_both("Mute(robots: [0], at: 0.2)"), [(2, 3)]);
 }
 
+/// When copies were lost.
+#[derive(Default)]
+struct Losses(Vec<SimTime>);
+
+impl Observer for Losses {
+    fn lost(&mut self, _: &Copy, _: LossCause, at: SimTime) {
+        self.0.push(at);
+    }
+}
+
+#[test]
+fn what_a_failure_decides_is_told_at_its_instant() {
+    let robots = vec![Scripted::new(&[1, 2, 3]), Scripted::new(&[])];
+    let setup = with_faults(setup(1.0, SLOW), "Mute(robots: [0], at: 0.21, lasts: For(0.01))");
+    let stop = CancellationToken::new();
+    let finished = setup.observe(line(2, 1.0), robots, DriverKind::Inline, &stop, Losses::default());
+    let told = finished.expect("the run reaches its end").observer.0;
+    assert_eq!(told, [SimTime::from_secs(0.21)]);
+}
+
 #[test]
 fn what_a_fault_of_a_link_stops_is_lost_as_it_is_handed_over() {
     let stopped = vec![(LossCause::LinkFault, 1)];
@@ -131,6 +154,17 @@ fn any_fault() -> impl Strategy<Value = String> {
     prop_oneof![4 => planned, 1 => hazard, 1 => burst, 1 => partition]
 }
 
+/// The books are balanced, and both drivers agree.
+fn check<const OVERHEARS: bool>(setup: &Setup) -> Result<(), TestCaseError> {
+    let [inline, actors] = [DriverKind::Inline, DriverKind::Actors]
+        .map(|driver| run(setup, line(6, 0.6), chatters::<OVERHEARS>(6), driver));
+    prop_assert!(inline.record.ledger.iter().all(TopicFates::is_balanced));
+    prop_assert!(inline.record.ledger.iter().any(|fates| fates.offered > 0));
+    prop_assert_eq!(inline.record, actors.record);
+    prop_assert_eq!(inline.robots, actors.robots);
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
@@ -149,15 +183,6 @@ proptest! {
         setup.control.phase = PhaseConfig::Random;
         if on_reception {
             setup.control.wake = WakeConfig::OnReception;
-        }
-        fn check<const OVERHEARS: bool>(setup: &Setup) -> Result<(), TestCaseError> {
-            let [inline, actors] = [DriverKind::Inline, DriverKind::Actors]
-                .map(|driver| run(setup, line(6, 0.6), chatters::<OVERHEARS>(6), driver));
-            prop_assert!(inline.record.ledger.iter().all(|fates| fates.is_balanced()));
-            prop_assert!(inline.record.ledger.iter().any(|fates| fates.offered > 0));
-            prop_assert_eq!(inline.record, actors.record);
-            prop_assert_eq!(inline.robots, actors.robots);
-            Ok(())
         }
         if overhears {
             check::<true>(&setup)?;

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use desim::engine::{SimTime, Span, Streams};
+use desim::engine::{ActorId, SimTime, Span, Streams};
 use desim::radio::{Disk, Fate, Fates, FrameId, Medium, RadioConfig, RadioKind, Transmission};
 
 /// A disk radio with these settings, which says what becomes of a frame when its first copy could arrive.
@@ -20,17 +20,24 @@ impl RadioKind for Late {
             least: disk.lookahead(),
             disk,
             tells: self.tells,
-            held: VecDeque::new(),
+            frames: VecDeque::new(),
         })
     }
+}
+
+/// A frame, and what it knows of it.
+struct Frame {
+    told_at: SimTime,
+    id: FrameId,
+    known: Vec<(ActorId, Fate)>,
 }
 
 struct Held {
     disk: Disk,
     least: Span,
     tells: bool,
-    /// Frames, and what it knows of them, by when it says so.
-    held: VecDeque<(SimTime, FrameId, Vec<(desim::engine::ActorId, Fate)>)>,
+    /// Frames, by when it says what becomes of them.
+    frames: VecDeque<Frame>,
 }
 
 impl Medium for Held {
@@ -48,17 +55,22 @@ impl Medium for Held {
         for listener in frame.listeners {
             fates.push(listener.id, Fate::Open);
         }
-        let known = known.drain().collect();
-        self.held.push_back((frame.at + self.least, frame.frame, known));
+        self.frames.push_back(Frame {
+            told_at: frame.at + self.least,
+            id: frame.frame,
+            known: known.drain().collect(),
+        });
     }
 
     fn next(&self) -> SimTime {
-        self.held.front().map_or(SimTime::NEVER, |frame| frame.0)
+        self.frames.front().map_or(SimTime::NEVER, |frame| frame.told_at)
     }
 
     fn advance(&mut self, _: SimTime, fates: &mut Fates) -> Option<FrameId> {
-        let (_, frame, known) = self.held.pop_front()?;
-        known.into_iter().for_each(|(id, fate)| fates.push(id, fate));
-        Some(frame)
+        let frame = self.frames.pop_front()?;
+        for (receiver, fate) in frame.known {
+            fates.push(receiver, fate);
+        }
+        Some(frame.id)
     }
 }

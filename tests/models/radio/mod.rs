@@ -12,6 +12,8 @@ mod sensing;
 mod statistics;
 mod timeouts;
 
+use std::collections::BTreeMap;
+
 use desim::engine::{ActorId, SimTime, Span, Streams};
 use desim::geometry::Vec2;
 use desim::quantity::{NonNegative, Positive, Probability};
@@ -85,7 +87,10 @@ impl Channel {
         *number += 1;
         let mut fates = Fates::default();
         self.disk.transmit(&frame, &mut fates);
-        fates.drain().for_each(|(id, fate)| receive(id, fate));
+        let fates: BTreeMap<ActorId, Fate> = fates.drain().collect();
+        for listener in listeners {
+            receive(listener.id, fates[&listener.id]);
+        }
     }
 }
 
