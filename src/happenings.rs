@@ -80,11 +80,12 @@ pub trait Observer {
     /// All that `robot` says at `now` is on air, with everyone where `world` has them.
     fn spoke(&mut self, now: SimTime, robot: ActorId, world: &World) {}
 
-    /// A copy will arrive at `at`, if its receiver can hear then.
+    /// A copy will arrive at `at`, if its receiver can hear then. Told when the radio knows: as it is sent over the disk radio, later over one on which
+    /// frames take time.
     #[inline]
     fn arrives(&mut self, copy: &Copy, at: SimTime) {}
 
-    /// A copy was lost at `at`: when it was sent, or, if its receiver could not hear, at its arrival.
+    /// A copy was lost at `at`: when the radio knew, or, if its receiver could not hear, at its arrival.
     #[inline]
     fn lost(&mut self, copy: &Copy, cause: LossCause, at: SimTime) {}
 
@@ -92,8 +93,8 @@ pub trait Observer {
     #[inline]
     fn delivered(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {}
 
-    /// A copy is still under way when the run ends, and would have arrived at `at`.
-    fn in_flight(&mut self, copy: &Copy, at: SimTime) {}
+    /// A copy is still under way when the run ends, and would have arrived at `at`; `None` if not even the radio knows whether it would have.
+    fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {}
 
     /// A fault began or ended, with every robot at its place in `positions`.
     fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {}
@@ -162,12 +163,12 @@ pub struct Copy {
     pub size: MessageSize,
     /// Its number among the sender's messages.
     pub sequence: u32,
-    /// When its transmission began.
+    /// When it was sent.
     pub sent_at: SimTime,
 }
 
 impl Copy {
-    /// How long after the transmission `at` is.
+    /// How long after it was sent `at` is.
     #[inline]
     #[must_use]
     pub fn latency(&self, at: SimTime) -> Span {
@@ -180,6 +181,6 @@ impl Copy {
 pub struct Inbox<'a, M> {
     /// Those that it reads now.
     pub read: &'a [Reception<M>],
-    /// Those that are on their way to it.
+    /// Those that are on their way to it. Of those of which the radio does not know yet whether they arrive, the arrival is `NEVER`.
     pub waiting: &'a [Reception<M>],
 }

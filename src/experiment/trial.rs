@@ -92,6 +92,7 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         motion: scenario.motion.clone(),
         control: scenario.control.clone(),
         radio: scenario.radio.clone(),
+        own_radio: None,
         piggyback: scenario.gossip.piggyback,
         faults: scenario.faults.clone(),
         metrics: scenario.metrics.clone(),

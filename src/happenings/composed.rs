@@ -51,7 +51,7 @@ macro_rules! hand_on {
         }
 
         #[inline]
-        fn in_flight(&mut self, copy: &Copy, at: SimTime) {
+        fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
             $tell!(self, in_flight(copy, at));
         }
 

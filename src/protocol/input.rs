@@ -53,7 +53,7 @@ pub struct Frame<M> {
     pub sender: ActorId,
     /// Its number among the sender's messages, which is that of its frame where each has one of its own.
     pub sequence: u32,
-    /// When its transmission began.
+    /// When it was sent.
     pub sent_at: SimTime,
     /// Its payload in bytes, headers not included.
     pub payload_bytes: u16,

@@ -1,280 +1,270 @@
-//! The shared medium.
+//! What a run asks of a radio, and what it tells it.
 
-use super::config::RadioConfig;
-use super::draw::{CHANNEL, FrameCopy, LatencyBits};
-use super::latency::Latency;
-use super::loss::Loss;
-use super::sensing::Sensing;
-use super::{Fate, Listener, LossCause};
-use crate::engine::{ActorId, KeyedStreams, SimTime, Span, Streams, prefetch};
+use std::fmt::Debug;
 
-/// The radio of one run: settles the fate of every copy of every frame.
-#[derive(Debug)]
-pub struct Medium {
-    range: f64,
-    /// For each robot the number of its next frame.
-    sequences: Vec<u32>,
-    loss: Loss,
-    latency: Latency,
-    channel: KeyedStreams,
-    /// The latency of every copy, if none is ever lost or late: no fate needs its channel's stream then.
-    certain: Option<Span>,
-    sensing: Sensing,
-    /// What the copies of the present frame meet in their channels: a buffer.
-    met: Vec<[u64; 2]>,
+use super::LossCause;
+use crate::engine::{ActorId, SimTime, Span, Streams};
+use crate::geometry::Vec2;
+
+/// A radio that runs can be held over: its settings, of which each run makes itself a [`Medium`].
+///
+/// A program brings a radio of its own by this trait and [`Setup::own_radio`](crate::simulation::Setup::own_radio). Here is one over which each frame
+/// takes its time on air and arrives, whatever others send meanwhile:
+///
+/// ```
+/// use std::collections::VecDeque;
+/// use std::sync::Arc;
+///
+/// use desim::engine::{SimTime, Span, Streams};
+/// use desim::radio::{Fate, Fates, FrameId, Listener, Medium, RadioKind, Transmission};
+/// use desim::simulation::Setup;
+///
+/// const RANGE_M: f64 = 2.0;
+/// const BIT_S: f64 = 4e-6;
+///
+/// #[derive(Debug)]
+/// struct Quiet;
+///
+/// impl RadioKind for Quiet {
+///     fn medium(&self, _: &Streams, _robots: usize) -> Box<dyn Medium> {
+///         Box::new(OnAir::default())
+///     }
+/// }
+///
+/// /// What is on air, as it is handed over: when each frame ends, and who is listening.
+/// #[derive(Default)]
+/// struct OnAir(VecDeque<(SimTime, FrameId, Vec<Listener>)>);
+///
+/// impl Medium for OnAir {
+///     fn range(&self) -> f64 {
+///         RANGE_M
+///     }
+///
+///     fn lookahead(&self) -> Span {
+///         Span::from_secs(8.0 * BIT_S) // a byte
+///     }
+///
+///     fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+///         let ends = frame.at + Span::from_secs(f64::from(8 * frame.bytes) * BIT_S);
+///         for listener in frame.listeners {
+///             fates.push(listener.id, Fate::Open);
+///         }
+///         let place = self.0.partition_point(|other| other.0 <= ends);
+///         self.0.insert(place, (ends, frame.frame, frame.listeners.to_vec()));
+///     }
+///
+///     fn next(&self) -> SimTime {
+///         self.0.front().map_or(SimTime::NEVER, |first| first.0)
+///     }
+///
+///     fn advance(&mut self, now: SimTime, fates: &mut Fates) -> Option<FrameId> {
+///         let (_, frame, listeners) = self.0.pop_front()?;
+///         for Listener { id, sender } in listeners {
+///             let displacement = [sender.x as f32, sender.y as f32];
+///             fates.push(id, Fate::Arrives { at: now, displacement });
+///         }
+///         Some(frame)
+///     }
+/// }
+///
+/// let mut setup = Setup::lasting(Span::from_secs(60.0));
+/// setup.own_radio = Some(Arc::new(Quiet));
+/// ```
+pub trait RadioKind: Debug + Send + Sync {
+    /// The radio of one run, for robots 0 to `robots` − 1, drawing from the `streams` of their trial.
+    fn medium(&self, streams: &Streams, robots: usize) -> Box<dyn Medium>;
 }
 
-impl Medium {
-    /// The radio that `config` describes, for robots 0 to `robots` − 1, drawing from the `streams` of their trial.
-    ///
-    /// # Panics
-    /// If `config` has [`problems`](RadioConfig::problems): a scenario is checked before it is run.
+/// The radio of one run: a state machine that is handed frames and decides what becomes of each copy, when it is known.
+///
+/// A radio that knows at once says so in [`transmit`](Self::transmit), and that is all that it has to do. One over which frames take time leaves
+/// copies [open](Fate::Open) there, names the instant of its [next](Self::next) event, whatever that is to it, is
+/// [advanced](Self::advance) to it, and then decides. The run has one entry in its queue for it, which it moves to that instant.
+///
+/// # What the run sees to
+/// - An open copy waits with its receiver, and is in flight if the run ends first.
+/// - A copy is lost if its receiver cannot hear at the instant of its arrival, whenever that was decided. That a receiver was deaf for a part of
+///   a frame, or that the sender fell silent in the middle of it, is for a medium to see that has frames of some length
+///   ([`enable`](Self::enable)).
+/// - Faults of links are asked when a frame is handed over: a listener that they stop it at is not among the medium's.
+/// - What a robot that cannot send says is not handed over.
+///
+/// # Where everybody is
+/// A frame comes with its listeners and their places as they are when it is handed over, and its fate is decided by these:
+/// robots go less than a centimetre while a frame of some milliseconds lasts. What jams whom follows from places too, not from who is offered what.
+///
+/// # Order
+/// At one instant the medium is advanced behind faults and before robots wake, so that a robot which wakes at t reads what has arrived at t.
+pub trait Medium {
+    /// Communication range in metres: who is farther away than this hears nothing; at exactly this distance one still listens (paper section 3.1).
+    /// The same throughout a run.
+    fn range(&self) -> f64;
+
+    /// No copy arrives earlier than so long after its frame is handed over: the least latency, or the least time until a frame
+    /// begins and the least that one lasts. So long is what robots do without effect on others, which spares time; zero is always right. The same
+    /// throughout a run.
+    fn lookahead(&self) -> Span;
+
+    /// Takes over `frame`, and says of each of its listeners what becomes of its copy, if only that it is [open](Fate::Open). A copy that arrives does so
+    /// no earlier than [`lookahead`](Self::lookahead) allows; copies of successive frames may arrive in another order than they were sent.
+    fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates);
+
+    /// When it wants to be [advanced](Self::advance) next; `NEVER` if nothing is to happen.
+    fn next(&self) -> SimTime {
+        SimTime::NEVER
+    }
+
+    /// Lets one thing happen that is due at `now`, its [`next`](Self::next) instant. If that decides open copies, all of one frame, their fates
+    /// are put into `fates` and the frame is returned; more of its copies may stay open. None arrives before `now`.
+    fn advance(&mut self, now: SimTime, fates: &mut Fates) -> Option<FrameId> {
+        let _ = (now, fates);
+        None
+    }
+
+    /// From `now` on the radio of `robot` sends or does not, and hears or does not. At first all do both.
+    fn enable(&mut self, now: SimTime, robot: ActorId, sends: bool, hears: bool) {
+        let _ = (now, robot, sends, hears);
+    }
+}
+
+/// A frame that is handed to a medium.
+#[derive(Clone, Copy, Debug)]
+pub struct Transmission<'a> {
+    /// When it is handed over.
+    pub at: SimTime,
+    /// Which it is: what the medium calls it when it decides.
+    pub frame: FrameId,
+    /// Its length in bytes, of the headers that the run accounts for and of all payloads.
+    pub bytes: u32,
+    /// The one robot that everything in it is for, if there is one, be it in range or not: a radio that acknowledges does so for such a frame.
+    pub to: Option<ActorId>,
+    /// Where its sender is, metres, arena axes.
+    pub position: Vec2,
+    /// The other robots in range that something in it is for, but those at which the faults of links stop it.
+    pub listeners: &'a [Listener],
+}
+
+/// A frame of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FrameId {
+    /// Whose.
+    pub sender: ActorId,
+    /// Its number among its sender's frames, from 0.
+    pub number: u32,
+    /// The number of its first message among its sender's messages, and how many there are in it.
+    first: u32,
+    messages: u32,
+}
+
+impl FrameId {
+    /// Frame `number` of `sender`, with one message in it, and so in all frames before.
     #[must_use]
-    pub fn new(config: &RadioConfig, streams: &Streams, robots: usize) -> Self {
-        let problems = config.problems();
-        assert!(
-            problems.is_empty(),
-            "the radio's configuration is unusable: {problems:?}"
-        );
-        let range = config.range.get();
-        let loss = Loss::new(&config.loss, range, *streams, robots);
-        let latency = Latency::new(&config.latency);
+    pub const fn new(sender: ActorId, number: u32) -> Self {
+        Self::with_messages(sender, number, number, 1)
+    }
+
+    /// Frame `number` of `sender`, with so many `messages`, of which the first has the number `first` among the sender's.
+    pub(crate) const fn with_messages(sender: ActorId, number: u32, first: u32, messages: u32) -> Self {
         Self {
-            range,
-            sequences: vec![0; robots],
-            channel: streams.keyed(CHANNEL),
-            certain: latency.constant().filter(|_| loss.is_none()),
-            loss,
-            latency,
-            sensing: Sensing::new(&config.sensing, *streams),
-            met: Vec::new(),
+            sender,
+            number,
+            first,
+            messages,
         }
     }
 
-    /// Communication range in metres: a robot at exactly this distance still listens (paper section 3.1).
+    /// How many messages are in it.
     #[must_use]
-    pub fn range(&self) -> f64 {
-        self.range
+    pub const fn messages(self) -> u32 {
+        self.messages
     }
 
-    /// Asks for the memory of `sender`, which is to transmit soon.
-    pub fn prefetch_row(&self, sender: ActorId) {
-        prefetch(&self.sequences[sender.index()]);
-    }
-
-    /// The shortest time from a transmission to an arrival: so long is what robots do without effect on others.
-    #[must_use]
-    pub fn lookahead(&self) -> Span {
-        self.latency.least()
-    }
-
-    /// The number that the next frame of `sender` will have.
-    ///
-    /// # Panics
-    /// If `sender` is not one of the medium's robots.
-    #[must_use]
-    pub fn upcoming(&self, sender: ActorId) -> u32 {
-        self.sequences[sender.index()]
-    }
-
-    /// Transmits the next frame of `sender` at `now`, and returns the frame's number among that sender's, from 0.
-    ///
-    /// `listeners` are the other robots within [`range`](Self::range) at that instant. `receive` is called once for
-    /// each, in their order, with what becomes of its copy. An arrival is never before `now`; copies of successive
-    /// frames may arrive in another order than they were sent.
-    ///
-    /// # Panics
-    /// If `sender` is not one of the medium's robots.
-    pub fn transmit(
-        &mut self,
-        now: SimTime,
-        sender: ActorId,
-        listeners: impl IntoIterator<Item = Listener, IntoIter: Clone>,
-        mut receive: impl FnMut(ActorId, Fate),
-    ) -> u32 {
-        let sequence = self.next_sequence(sender);
-        let copies = listeners.into_iter().map(|listener| {
-            let copy = FrameCopy {
-                sender,
-                receiver: listener.id,
-                sequence,
-            };
-            (listener, copy)
-        });
-        if let Some(latency) = self.certain {
-            for (listener, copy) in copies {
-                receive(listener.id, self.arrival(now + latency, copy, listener));
-            }
-            return sequence;
-        }
-        // First what all copies meet, which the processor does for several at a time, and then what that leads to, which it
-        // has to guess at.
-        let mut met = std::mem::take(&mut self.met);
-        met.clear();
-        met.extend(copies.clone().map(|(_, copy)| copy.channel(self.channel)));
-        for ((listener, copy), &bits) in copies.zip(&met) {
-            receive(listener.id, self.fate(now, copy, listener, bits));
-        }
-        self.met = met;
-        sequence
-    }
-
-    fn next_sequence(&mut self, sender: ActorId) -> u32 {
-        let next = &mut self.sequences[sender.index()];
-        let sequence = *next;
-        *next = sequence.wrapping_add(1);
-        sequence
-    }
-
-    // Not inlined, the fate goes through memory and back: a fifth more time a reception.
-    #[allow(clippy::inline_always)]
-    #[inline(always)]
-    fn fate(&mut self, now: SimTime, copy: FrameCopy, listener: Listener, [loss, latency]: [u64; 2]) -> Fate {
-        let probability = self.loss.probability(copy, listener.sender.norm_squared());
-        if unit_interval(loss) < probability {
-            return Fate::Lost(LossCause::Channel);
-        }
-        let mut bits = LatencyBits::new(latency, copy, self.channel);
-        self.arrival(now + self.latency.draw(&mut bits), copy, listener)
-    }
-
+    /// Whether message number `sequence` of `sender` is in it.
     #[inline]
-    fn arrival(&self, at: SimTime, copy: FrameCopy, listener: Listener) -> Fate {
-        Fate::Arrives {
-            at,
-            displacement: self.sensing.displacement(copy, listener.sender),
-        }
+    #[must_use]
+    pub fn holds(self, sender: ActorId, sequence: u32) -> bool {
+        sender == self.sender && sequence.wrapping_sub(self.first) < self.messages
     }
 }
 
-/// 64 random bits as a number in [0, 1), on a grid of 2⁻⁵³: below 1, so that a probability of 1 always happens, and not
-/// below 0, so that one of 0 never does.
-#[inline]
-fn unit_interval(bits: u64) -> f64 {
-    (bits >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+/// A robot within range of a transmission.
+#[derive(Clone, Copy, Debug)]
+pub struct Listener {
+    /// Who.
+    pub id: ActorId,
+    /// The sender's position relative to it at the time of transmission, metres, arena axes.
+    pub sender: Vec2,
 }
 
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
+/// What becomes of a frame at one intended receiver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fate {
+    /// It will have arrived at `at`; the receiver senses the sender at `displacement` (metres, arena axes).
+    Arrives {
+        /// Instant of arrival.
+        at: SimTime,
+        /// Sensed position of the sender relative to the receiver.
+        displacement: [f32; 2],
+    },
+    /// It never arrives.
+    Lost(LossCause),
+    /// That is not known yet.
+    Open,
+}
 
-    use super::*;
-    use crate::geometry::Vec2;
-    use crate::quantity::{NonNegative, Positive, Probability};
-    use crate::radio::{LatencyConfig, LossConfig, SensingConfig};
+/// What becomes of copies of one frame. A medium fills it, in any order, and the run empties it.
+#[derive(Debug, Default)]
+pub struct Fates {
+    // Apart: deciding is arithmetic, filling inboxes waits for memory, and each runs at its own pace.
+    pub(crate) arrivals: Vec<Arrival>,
+    pub(crate) losses: Vec<(ActorId, LossCause)>,
+    pub(crate) open: Vec<ActorId>,
+}
 
-    const ROBOTS: u32 = 30;
+/// A copy that will arrive.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrival {
+    pub receiver: ActorId,
+    pub at: SimTime,
+    pub displacement: [f32; 2],
+}
 
-    fn listener(id: u32) -> Listener {
-        Listener {
-            id: ActorId(id),
-            sender: Vec2::new(0.05 * f64::from(id), -0.5),
+impl Fates {
+    /// The copy of `receiver` has this `fate`.
+    #[inline]
+    pub fn push(&mut self, receiver: ActorId, fate: Fate) {
+        match fate {
+            Fate::Arrives { at, displacement } => self.arrivals.push(Arrival {
+                receiver,
+                at,
+                displacement,
+            }),
+            Fate::Lost(cause) => self.losses.push((receiver, cause)),
+            Fate::Open => self.open.push(receiver),
         }
     }
 
-    /// Radios with each loss model, random latency and noise.
-    fn radios() -> impl Strategy<Value = RadioConfig> {
-        let probability = Probability::new;
-        let losses = prop::sample::select(vec![
-            LossConfig::None,
-            LossConfig::Bernoulli(probability(0.3)),
-            LossConfig::GilbertElliott {
-                good_to_bad: probability(0.2),
-                bad_to_good: probability(0.3),
-                good_loss: probability(0.1),
-                bad_loss: probability(0.9),
-            },
-            LossConfig::Distance {
-                at_range: probability(0.8),
-                exponent: Positive::new(1.5),
-            },
-        ]);
-        losses.prop_map(|loss| RadioConfig {
-            loss,
-            latency: LatencyConfig::Normal {
-                mean: NonNegative::new(0.01),
-                std_dev: NonNegative::new(0.003),
-                min: NonNegative::new(0.001),
-            },
-            sensing: SensingConfig {
-                range_noise: NonNegative::new(0.1),
-                bearing_noise: NonNegative::new(5.0),
-            },
-            ..RadioConfig::default()
-        })
+    /// Of how many copies it holds the fate.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.arrivals.len() + self.losses.len() + self.open.len()
     }
 
-    fn medium(config: &RadioConfig) -> Medium {
-        Medium::new(config, &Streams::new(3, 1), ROBOTS as usize)
+    /// Whether it holds no fate.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
-    /// The fates at `hearing` of the next frame of robot 0.
-    fn transmit(medium: &mut Medium, hearing: &[u32]) -> Vec<(u32, Fate)> {
-        let mut fates = Vec::new();
-        let listeners = hearing.iter().map(|&id| listener(id));
-        medium.transmit(SimTime::from_secs(1.0), ActorId(0), listeners, |id, fate| {
-            fates.push((id.0, fate));
+    /// Takes out what is in it: first what arrives, then what is lost, then what is open, each in the order in which it was put in.
+    pub fn drain(&mut self) -> impl Iterator<Item = (ActorId, Fate)> {
+        let arrivals = self.arrivals.drain(..).map(|arrival| {
+            let Arrival { at, displacement, .. } = arrival;
+            (arrival.receiver, Fate::Arrives { at, displacement })
         });
-        fates
-    }
-
-    #[test]
-    fn each_sender_numbers_its_own_frames_also_those_that_nobody_hears() {
-        let mut medium = medium(&RadioConfig::default());
-        let mut send = |id| medium.transmit(SimTime::ZERO, ActorId(id), [], |_, _| {});
-        assert_eq!([send(0), send(0), send(5), send(0), send(5)], [0, 1, 0, 2, 1]);
-    }
-
-    #[test]
-    fn a_perfect_radio_delivers_after_its_constant_latency_with_the_true_displacement() {
-        let fates = transmit(&mut medium(&RadioConfig::default()), &[10]);
-        let arrival = Fate::Arrives {
-            at: SimTime::from_secs(1.1),
-            displacement: [0.5, -0.5],
-        };
-        assert_eq!(fates, [(10, arrival)]);
-    }
-
-    #[test]
-    #[should_panic(expected = "the radio's configuration is unusable")]
-    fn a_configuration_with_problems_is_refused() {
-        let latency = LatencyConfig::Normal {
-            mean: NonNegative::new(0.01),
-            std_dev: NonNegative::new(0.001),
-            min: NonNegative::new(1.0),
-        };
-        let _ = medium(&RadioConfig {
-            latency,
-            ..RadioConfig::default()
-        });
-    }
-
-    proptest! {
-        #[test]
-        fn every_listener_has_one_fate_in_the_order_given_and_none_arrives_before_it_could(
-            config in radios(), hearing in prop::collection::vec(1..ROBOTS, 0..40),
-        ) {
-            let fates = transmit(&mut medium(&config), &hearing);
-            prop_assert_eq!(fates.iter().map(|(id, _)| *id).collect::<Vec<_>>(), hearing);
-            for (_, fate) in fates {
-                if let Fate::Arrives { at, .. } = fate {
-                    prop_assert!(at >= SimTime::from_secs(1.001));
-                }
-            }
-        }
-
-        #[test]
-        fn a_fate_depends_neither_on_who_else_listens_nor_on_their_order(
-            config in radios(),
-            frames in prop::collection::vec(prop::collection::btree_set(1..ROBOTS, 0..20), 1..20),
-        ) {
-            let (mut among_others, mut alone) = (medium(&config), medium(&config));
-            for hearing in frames {
-                let backwards: Vec<u32> = hearing.iter().rev().copied().collect();
-                let fate = transmit(&mut among_others, &backwards).into_iter().find(|(id, _)| *id == 7);
-                let only: Vec<u32> = hearing.into_iter().filter(|id| *id == 7).collect();
-                prop_assert_eq!(fate, transmit(&mut alone, &only).pop());
-            }
-        }
+        let losses = self.losses.drain(..);
+        let losses = losses.map(|(receiver, cause)| (receiver, Fate::Lost(cause)));
+        let open = self.open.drain(..).map(|receiver| (receiver, Fate::Open));
+        arrivals.chain(losses).chain(open)
     }
 }

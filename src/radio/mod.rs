@@ -1,8 +1,11 @@
-//! The radio: who hears a transmission, when, and what becomes of each copy. A pure state machine.
+//! The radio: who hears a transmission, when, and what becomes of each copy. Pure state machines.
 //!
-//! A [`Medium`] is told of a transmission and of the robots in range, and settles a [`Fate`] for each of them: the loss
-//! model says whether the copy survives, the latency model when it arrives, the sensing model where its receiver
-//! believes the sender to be. Receivers are independent of one another, and a late copy holds up no other.
+//! A [`Medium`] is handed each frame with its length and with the robots in range, and says of each copy what becomes of it: at once, or, over a
+//! radio on which frames take time and meet, when it is known, at events of its own. A [`RadioKind`] is what such radios are made of.
+//!
+//! # The disk radio
+//! [`RadioConfig`] describes it, and [`Disk`] is the instant case: the loss model says whether a copy survives, the latency model when it arrives,
+//! the sensing model where its receiver believes the sender to be. Receivers are independent of one another, and a late copy holds up no other.
 //!
 //! Every draw is keyed by purpose, sender, receiver and the sender's frame number: a copy has one stream for the channel,
 //! whose first draw decides its loss and the next ones its latency, and one for sensing. So the fate of a copy depends neither on who else listens nor on the order in which
@@ -10,14 +13,12 @@
 //! settings has the same latency under both. A model that needs no randomness opens no stream.
 //!
 //! # Room for what is not here
-//! Propagation (path loss, shadowing) replaces the disk: [`Medium::range`] becomes the farthest distance at which a
-//! reception is possible, which is all that the run asks of it, and a copy below the receiver's sensitivity is lost for
-//! [`LossCause::BelowSensitivity`] ahead of the loss model. Medium access (carrier sense, backoff, collisions, queues) needs
-//! transmissions that begin and end: [`Medium::transmit`] then enqueues, and the run hands the medium its own wake-ups
-//! back. Fates leave through the `receive` callback in both cases, because a fate need not be known when a frame is
-//! handed over; each new reason for a loss is one more [`LossCause`].
+//! Propagation (path loss, shadowing) replaces the disk: [`Medium::range`] is then the distance that counts as in range. What overlaps where follows from the places of senders and
+//! listeners, which frames come with, not from who is offered what: a robot jams also those that it says nothing to. Each new reason for a loss is one more
+//! [`LossCause`]. What a sender learns of a frame to one robot ([`Transmission::to`]) is one more thing that [`Medium::advance`] may say of it.
 
 mod config;
+mod disk;
 mod draw;
 mod gilbert;
 mod latency;
@@ -27,13 +28,13 @@ mod medium;
 mod sensing;
 
 pub use config::{LatencyConfig, LossConfig, RadioConfig, SensingConfig};
+pub use disk::Disk;
 pub use law::{LossChain, LossRun};
-pub use medium::Medium;
+pub use medium::{Fate, Fates, FrameId, Listener, Medium, RadioKind, Transmission};
+
+pub(crate) use medium::Arrival;
 
 use serde::{Deserialize, Serialize};
-
-use crate::engine::{ActorId, SimTime};
-use crate::geometry::Vec2;
 
 /// Why a frame did not reach a receiver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -69,27 +70,4 @@ impl LossCause {
             Self::BelowSensitivity => "below_sensitivity",
         }
     }
-}
-
-/// What becomes of a frame at one intended receiver.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fate {
-    /// It will have arrived at `at`; the receiver senses the sender at `displacement` (metres, arena axes).
-    Arrives {
-        /// Instant of arrival.
-        at: SimTime,
-        /// Sensed position of the sender relative to the receiver.
-        displacement: [f32; 2],
-    },
-    /// It never arrives.
-    Lost(LossCause),
-}
-
-/// A robot within range of a transmission.
-#[derive(Clone, Copy, Debug)]
-pub struct Listener {
-    /// Who.
-    pub id: ActorId,
-    /// The sender's position relative to it at the time of transmission, metres, arena axes.
-    pub sender: Vec2,
 }

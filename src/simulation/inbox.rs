@@ -1,9 +1,10 @@
-//! Where frames wait for their receiver: a copy goes straight here, not through the event queue.
+//! Where copies of frames wait for their fate and for their receiver: they go straight here, not through the event queue.
 
 use std::cmp::Ordering;
 
 use crate::engine::{SimTime, prefetch_all, prefetch_end};
-use crate::protocol::Reception;
+use crate::protocol::{Frame, Reception};
+use crate::radio::FrameId;
 
 /// Frames on their way to one robot, and those that arrived since it last woke. Aligned so that none lies across two cache
 /// lines: every copy of every frame reads one.
@@ -36,7 +37,7 @@ impl<M> Inbox<M> {
         prefetch_all(&self.waiting);
     }
 
-    /// Takes in a frame that will arrive at `reception.at`.
+    /// Takes in a frame that will arrive at `reception.at`; `NEVER` if its fate is open.
     #[inline]
     pub fn push(&mut self, reception: Reception<M>) {
         self.latest = self.latest.max(reception.at);
@@ -48,10 +49,11 @@ impl<M> Inbox<M> {
         std::mem::swap(&mut self.waiting, arrived);
         if self.latest > now {
             // Few are still under way when a robot wakes: they go back.
+            self.latest = SimTime::ZERO;
             let mut next = 0;
             while let Some(reception) = arrived.get(next) {
                 if reception.at > now {
-                    self.waiting.push(arrived.swap_remove(next));
+                    self.push(arrived.swap_remove(next));
                 } else {
                     next += 1;
                 }
@@ -60,13 +62,46 @@ impl<M> Inbox<M> {
         arrived.sort_unstable_by(arrival_order);
     }
 
+    /// What is open of `frame` arrives at `at`, with its sender at `displacement`; `tell` is called with each message. Whether anything was open.
+    pub fn arrive(
+        &mut self,
+        frame: FrameId,
+        at: SimTime,
+        displacement: [f32; 2],
+        mut tell: impl FnMut(&Frame<M>),
+    ) -> bool {
+        // It came lately, and is looked for from the end on.
+        let open = self.waiting.iter_mut().rev().filter(|copy| is_open(copy, frame));
+        let mut found = false;
+        for reception in open.take(frame.messages() as usize) {
+            reception.at = at;
+            reception.displacement = displacement;
+            tell(&reception.frame);
+            found = true;
+        }
+        found
+    }
+
+    /// What is open of `frame` is lost: `lose` is called with each message. Whether anything was open.
+    pub fn lose(&mut self, frame: FrameId, mut lose: impl FnMut(Reception<M>)) -> bool {
+        let mut found = false;
+        for _ in 0..frame.messages() {
+            let Some(place) = self.waiting.iter().rposition(|copy| is_open(copy, frame)) else {
+                break;
+            };
+            lose(self.waiting.swap_remove(place));
+            found = true;
+        }
+        found
+    }
+
     /// Takes out what arrives within `from..until`, and calls `lose` with each.
     pub fn drop_arrivals(&mut self, from: SimTime, until: SimTime, lose: impl FnMut(Reception<M>)) {
         let lost = |reception: &mut Reception<M>| (from..until).contains(&reception.at);
         self.waiting.extract_if(.., lost).for_each(lose);
     }
 
-    /// The earliest arrival still waiting.
+    /// The earliest arrival still waiting; `NEVER` if the fate of all is open.
     pub fn next_arrival(&self) -> Option<SimTime> {
         self.waiting.iter().map(|reception| reception.at).min()
     }
@@ -75,6 +110,10 @@ impl<M> Inbox<M> {
     pub fn waiting(&self) -> &[Reception<M>] {
         &self.waiting
     }
+}
+
+fn is_open<M>(reception: &Reception<M>, frame: FrameId) -> bool {
+    reception.at == SimTime::NEVER && frame.holds(reception.frame.sender, reception.frame.sequence)
 }
 
 fn arrival_order<M>(a: &Reception<M>, b: &Reception<M>) -> Ordering {
@@ -104,6 +143,56 @@ mod tests {
             },
             displacement: [0.0; 2],
         }
+    }
+
+    /// Two messages of robot 1 in one frame and one of robot 2 are open beside one that has arrived.
+    #[test]
+    fn an_open_copy_waits_until_its_frame_arrives_or_is_lost() {
+        const OPEN: u64 = u64::MAX;
+        let frame = FrameId::with_messages(ActorId(1), 3, 7, 2);
+        let fresh = || {
+            let mut inbox = Inbox::default();
+            let copies = [(OPEN, 1, 7), (OPEN, 1, 8), (OPEN, 2, 7), (5, 1, 6)];
+            for (at, sender, sequence) in copies {
+                inbox.push(reception(at, sender, sequence));
+            }
+            inbox
+        };
+        let read = |inbox: &mut Inbox<()>, now| {
+            let mut arrived = Vec::new();
+            inbox.take_arrived(SimTime::from_nanos(now), &mut arrived);
+            arrived
+                .iter()
+                .map(|copy| (copy.frame.sender.0, copy.frame.sequence))
+                .collect::<Vec<_>>()
+        };
+
+        let mut inbox = fresh();
+        assert_eq!(inbox.next_arrival(), Some(SimTime::from_nanos(5)));
+        for (now, arrived) in [(9, vec![(1, 6)]), (10, vec![]), (10, vec![])] {
+            assert_eq!(read(&mut inbox, now), arrived);
+        }
+        let mut told = Vec::new();
+        let at = SimTime::from_nanos(20);
+        assert!(inbox.arrive(frame, at, [0.0, 2.0], |frame| told.push(frame.sequence)));
+        told.sort_unstable();
+        assert_eq!(told, [7, 8]);
+        assert!(!inbox.arrive(frame, at, [0.0; 2], |_| ()), "it is not open any more");
+        assert!(!inbox.lose(frame, |_| ()));
+        let displaced = inbox.waiting().iter().filter(|copy| copy.displacement()[1] > 1.0);
+        assert_eq!(displaced.count(), 2);
+        assert_eq!(read(&mut inbox, 19), []);
+        assert_eq!(read(&mut inbox, 20), [(1, 7), (1, 8)]);
+        assert_eq!(inbox.waiting().len(), 1);
+
+        let mut inbox = fresh();
+        let mut lost = Vec::new();
+        assert!(inbox.lose(frame, |copy| lost.push(copy.frame.sequence)));
+        lost.sort_unstable();
+        assert_eq!(lost, [7, 8]);
+        assert!(!inbox.lose(FrameId::new(ActorId(1), 6), |_| ()), "that one has arrived");
+        assert_eq!(read(&mut inbox, 20), [(1, 6)]);
+        assert_eq!(inbox.waiting().len(), 1);
     }
 
     proptest! {

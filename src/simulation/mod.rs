@@ -1,10 +1,11 @@
 //! The event loop of one run: it carries frames, moves robots and tells observers, and decides nothing itself.
 //!
-//! Events at one instant happen in this order: motion tick, faults, robot wakes, sample, observation. All robots that wake at
+//! Events at one instant happen in this order: motion tick, faults, radio, robot wakes, sample, observation. All robots that wake at
 //! one instant see the world as it was before any of them acted; their answers are then applied in the order of waking.
 //!
-//! A frame does not travel through the event queue. When a robot sends, the medium decides the fate of every copy at
-//! once, and each copy waits in its receiver's inbox until the receiver wakes.
+//! Copies of frames do not travel through the event queue. When a robot sends, the medium is handed the frame and each copy goes into its
+//! receiver's inbox, where it waits for its fate, if the medium does not know it at once, and for the receiver to wake. A medium whose frames take time
+//! has one entry in the queue, which is moved to its next event.
 
 mod air;
 mod clock;

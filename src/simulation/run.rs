@@ -18,11 +18,13 @@ use crate::protocol::{Input, Output, Protocol, Robot};
 
 const ROBOT: Purpose = Purpose::new("protocol.robot");
 
-/// What can happen, in the order in which it does at one instant. Frames are not events: they wait in inboxes.
+/// What can happen, in the order in which it does at one instant. Copies of frames are not events: they wait in inboxes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Event {
     MotionTick,
     Fault,
+    /// What the radio has to do, whatever it is and for however many frames.
+    Radio,
     /// A robot's timers and arrivals.
     Alarm(ActorId),
     /// The control steps of all robots that are due. They are not in the queue: their order never changes.
@@ -36,10 +38,11 @@ impl EventKey for Event {
         match self {
             Self::MotionTick => 0,
             Self::Fault => 1,
-            Self::Alarm(_) => 2,
-            Self::ControlSteps => 3,
-            Self::Sample => 4,
-            Self::Observe => 5,
+            Self::Radio => 2,
+            Self::Alarm(_) => 3,
+            Self::ControlSteps => 4,
+            Self::Sample => 5,
+            Self::Observe => 6,
         }
     }
 }
@@ -73,6 +76,8 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>, O: Observer> {
     pub(super) air: Air<P>,
     pub(super) faults: Faults,
     changes: Vec<Change>,
+    /// When the radio's event is due.
+    radio_due: SimTime,
     pub(super) observer: O,
     pub(super) control_steps: ControlSteps,
     pub(super) alarms: Vec<Alarms>,
@@ -124,6 +129,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
             air,
             faults,
             changes: Vec::new(),
+            radio_due: SimTime::NEVER,
             observer,
             control_steps: ControlSteps::new(first_steps, rhythm.control_period),
             alarms: first_steps.iter().map(|_| Alarms::default()).collect(),
@@ -143,6 +149,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
     /// Runs to the end and returns what is left.
     pub async fn until_end(mut self, stop: &CancellationToken) -> Result<Ended<P, O>, RunError> {
         let mut end = self.rhythm.time_limit;
+        self.plan_radio();
         loop {
             let (event, now) = self.next_event();
             if now > self.rhythm.time_limit {
@@ -162,6 +169,11 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
                     self.queue.schedule(event, now + self.world.tick());
                 }
                 Event::Fault => self.suffer(now),
+                Event::Radio => {
+                    self.air.advance(now, &mut self.observer);
+                    self.plan_radio();
+                    self.wake_reached();
+                }
                 Event::Sample => {
                     self.locate(now);
                     self.observer.sample(now, &self.positions);
@@ -204,11 +216,12 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
         }
         self.changes = changes;
         self.plan_faults();
+        self.plan_radio();
     }
 
     /// From `now` on `robot` can do what its `health` allows.
     fn ail(&mut self, now: SimTime, robot: ActorId, health: Health) {
-        self.air.set_hearing(now, robot, health.hears, &mut self.observer);
+        self.air.set_health(now, robot, health, &mut self.observer);
         let alarms = &mut self.alarms[robot.index()];
         if self.rhythm.wake_on_reception {
             alarms.set_arrival(self.air.next_arrival(robot));
@@ -228,6 +241,21 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
                 self.queue.cancel(&Event::Fault);
             }
             next => self.queue.schedule(Event::Fault, next),
+        }
+    }
+
+    /// Moves the radio's event to where the radio wants it.
+    pub(super) fn plan_radio(&mut self) {
+        let next = self.air.next_event();
+        if next == self.radio_due {
+            return;
+        }
+        self.radio_due = next;
+        match next {
+            SimTime::NEVER => {
+                self.queue.cancel(&Event::Radio);
+            }
+            next => self.queue.schedule(Event::Radio, next),
         }
     }
 

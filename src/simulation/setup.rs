@@ -1,6 +1,7 @@
 //! What a run is made of, for those who bring their own protocol.
 
 use std::str::FromStr;
+use std::sync::Arc;
 
 use tokio_util::sync::CancellationToken;
 
@@ -18,7 +19,7 @@ use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm as Repeated, WakeConfig};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::{CompletionConfig, Protocol, Robot, Start};
-use crate::radio::{Medium, RadioConfig};
+use crate::radio::{Medium, RadioConfig, RadioKind};
 use crate::spool::Scratch;
 
 /// How robots are run. Both give the same results, byte for byte.
@@ -63,6 +64,8 @@ pub struct Setup {
     pub control: ControlConfig,
     /// The radio.
     pub radio: RadioConfig,
+    /// A radio of the program's own, in place of the disk radio: then nothing of `radio` counts but the bytes of headers.
+    pub own_radio: Option<Arc<dyn RadioKind>>,
     /// Whether all messages of a wake go out in one frame.
     pub piggyback: bool,
     /// How robots and links fail.
@@ -145,14 +148,17 @@ impl Setup {
             Robot(robot)
         };
         let robots = robots.into_iter().zip(0..).map(started).collect();
-        let recorder = Recorder::new(self.layout::<P>(swarm), &self.metrics);
+        let medium = self.medium(swarm);
+        let recorder = Recorder::new(self.layout::<P>(swarm, medium.range()), &self.metrics);
         let books = (recorder, Digest::new());
         let run = async {
             match (self.trace.zip(P::STATUS), driver) {
                 // Traced or not is decided here, and not at every copy.
                 (Some((robot, topic)), _) => {
                     let observers = (books, (StatusTrace::new(robot, topic), observer));
-                    let ended = self.run_with(poses, Inline::new(robots), observers, stop).await?;
+                    let ended = self
+                        .run_with(poses, medium, Inline::new(robots), observers, stop)
+                        .await?;
                     let Finished {
                         mut record,
                         robots,
@@ -167,12 +173,12 @@ impl Setup {
                 }
                 (None, DriverKind::Actors) => {
                     let robots = Actors::spawn(robots);
-                    let ended = self.run_with(poses, robots, (books, observer), stop).await?;
+                    let ended = self.run_with(poses, medium, robots, (books, observer), stop).await?;
                     Ok(self.finished(ended))
                 }
                 (None, DriverKind::Inline) => {
                     let robots = Inline::new(robots);
-                    let ended = self.run_with(poses, robots, (books, observer), stop).await?;
+                    let ended = self.run_with(poses, medium, robots, (books, observer), stop).await?;
                     Ok(self.finished(ended))
                 }
             }
@@ -183,6 +189,7 @@ impl Setup {
     async fn run_with<P: Protocol, D: Driver<Robot<P>>, O: Observer>(
         &self,
         poses: Vec<Pose>,
+        medium: Box<dyn Medium>,
         driver: D,
         observer: O,
         stop: &CancellationToken,
@@ -190,14 +197,9 @@ impl Setup {
         let streams = self.streams();
         let robots = poses.len();
         let first_steps = self.first_steps(robots, streams);
-        let world = World::new(&self.motion, &self.arena, poses, self.radio.range.get());
+        let world = World::new(&self.motion, &self.arena, poses, medium.range());
         let rhythm = self.rhythm();
-        let air = Air::<P>::new(
-            Medium::new(&self.radio, &streams, robots),
-            robots,
-            self.piggyback,
-            rhythm.wake_on_reception,
-        );
+        let air = Air::<P>::new(medium, robots, self.headers(), self.piggyback, rhythm.wake_on_reception);
         let faults = Faults::new(&self.faults, P::ROLES, robots, rhythm.control_period, streams);
         let run = Run::new(rhythm, driver, world, air, faults, observer, streams, &first_steps);
         run.until_end(stop).await
@@ -232,7 +234,20 @@ impl Setup {
         }
     }
 
-    fn layout<P: Protocol>(&self, robots: usize) -> Layout {
+    /// The radio of this run.
+    fn medium(&self, robots: usize) -> Box<dyn Medium> {
+        let radio = self.own_radio.as_deref().unwrap_or(&self.radio);
+        radio.medium(&self.streams(), robots)
+    }
+
+    fn headers(&self) -> HeaderBytes {
+        HeaderBytes {
+            frame: self.radio.frame_header_bytes,
+            message: self.radio.message_header_bytes,
+        }
+    }
+
+    fn layout<P: Protocol>(&self, robots: usize, radio_range: f64) -> Layout {
         let circumstances = Circumstances {
             robots,
             status_interval: self.status_interval,
@@ -241,11 +256,8 @@ impl Setup {
             robots,
             topics: P::topics(&self.detector).len(),
             roles: P::ROLES.len(),
-            headers: HeaderBytes {
-                frame: self.radio.frame_header_bytes,
-                message: self.radio.message_header_bytes,
-            },
-            radio_range: self.radio.range.get(),
+            headers: self.headers(),
+            radio_range,
             control_period: self.control.period(),
             mission: self.mission.clone(),
             rumors: self.rumors,

@@ -1,6 +1,6 @@
 //! Waking robots: what they are told, and how their answers take effect.
 //!
-//! What a robot sends reaches nobody earlier than the radio's least latency allows, and between two motion ticks nothing else
+//! What a robot sends reaches nobody earlier than the radio's [lookahead](crate::radio::Medium::lookahead) allows, and between two motion ticks nothing else
 //! passes from robot to robot. So control steps that follow each other more closely than that, with no event between them, are
 //! taken in one round of the driver, each at its own instant: the conservative lookahead of parallel simulation (Chandy and
 //! Misra), here for the sake of mailboxes and of memory. Their answers take effect in order of time all the same, each when its
@@ -210,6 +210,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
                 faults: &self.faults,
             };
             self.air.say(now, robot, output, place, &mut self.observer)?;
+            self.plan_radio();
         }
         let rang = input.wake != Wake::ControlStep;
         if rang || self.rhythm.wake_on_reception || !output.timers.is_empty() {
@@ -233,8 +234,8 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
         }
     }
 
-    /// Brings forward the wakes of robots that frames were just sent to.
-    fn wake_reached(&mut self) {
+    /// Brings forward the wakes of robots that frames were just found to reach.
+    pub(super) fn wake_reached(&mut self) {
         if !self.rhythm.wake_on_reception {
             return;
         }

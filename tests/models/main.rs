@@ -3,6 +3,7 @@
 #[path = "../shipped/mod.rs"]
 mod shipped;
 
+mod airtime;
 mod codecs;
 mod drivers;
 mod exchangeable;

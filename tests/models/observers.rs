@@ -159,8 +159,9 @@ impl<const IN_ORDER: bool> Observer for Diary<IN_ORDER> {
         self.write(told, format!("{copy:?} delivered at {at:?}, read at {read:?}"));
     }
 
-    fn in_flight(&mut self, copy: &Copy, at: SimTime) {
+    fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
         let end = SimTime::from_secs(20.0);
+        let at = at.expect("a disk radio knows");
         assert!(at > end);
         self.write(end, format!("{copy:?} in flight until {at:?}"));
     }

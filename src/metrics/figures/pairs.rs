@@ -10,7 +10,7 @@ pub(super) fn declare(registry: &mut Registry) {
         registry
             .add_plain(
                 &format!("pairs.{}", measure.key),
-                &format!("{}, mean over pairs", measure.name),
+                measure.name,
                 (measure.unit, measure.better, Estimator::Mean),
                 move |record| mean(&record.pairs.iter().filter_map(value).collect::<Vec<f64>>()).value,
             )

@@ -49,28 +49,28 @@ pub struct PairMeasure {
 pub static MEASURES: &[PairMeasure] = &[
     PairMeasure {
         key: "delivery_ratio",
-        name: "copies delivered, of a pair",
+        name: "copies delivered, by pair",
         unit: DIMENSIONLESS,
         better: Better::Higher,
         value: |told| told.pair.delivery_ratio(),
     },
     PairMeasure {
         key: "age_mean_s",
-        name: "age of the newest status, over time",
+        name: "age of status by pair, mean",
         unit: SECONDS,
         better: Better::Lower,
         value: |told| told.ages.mean_s,
     },
     PairMeasure {
         key: "age_peak_s",
-        name: "age of a status when the next arrives",
+        name: "age of status by pair, peaks",
         unit: SECONDS,
         better: Better::Lower,
         value: |told| told.ages.peak_s,
     },
     PairMeasure {
         key: "age_p95_s",
-        name: "age of the newest status, no more 95 % of the time",
+        name: "age of status by pair, 95 % of the time",
         unit: SECONDS,
         better: Better::Lower,
         value: |told| told.ages.p95_s,

@@ -186,12 +186,14 @@ impl Recorder {
         self.latency.record(latency);
     }
 
-    /// A copy is still under way at the end of the run, which it would have arrived `latency` after its transmission began. It counts
-    /// among the latencies: those of the copies that made it in time are too short.
+    /// A copy is still under way at the end of the run, which it would have arrived `latency` after it was sent. It counts
+    /// among the latencies: those of the copies that made it in time are too short. `None` if it is open whether it would have arrived.
     #[inline]
-    pub fn in_flight(&mut self, topic: Topic, latency: Span) {
+    pub fn in_flight(&mut self, topic: Topic, latency: Option<Span>) {
         self.in_flight[usize::from(topic.0)] += 1;
-        self.latency.record(latency);
+        if let Some(latency) = latency {
+            self.latency.record(latency);
+        }
     }
 
     /// `robot` reported a change.

@@ -55,8 +55,8 @@ impl Observer for Recorder {
         }
     }
 
-    fn in_flight(&mut self, copy: &Copy, at: SimTime) {
-        self.in_flight(copy.topic, copy.latency(at));
+    fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
+        self.in_flight(copy.topic, at.map(|at| copy.latency(at)));
         if let Some(pairs) = &mut self.pairs {
             pairs.in_flight(copy);
         }

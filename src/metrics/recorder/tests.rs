@@ -49,7 +49,7 @@ fn a_transmission_with_every_fate_balances_and_is_recorded_at_its_receivers() {
     recorder.offered(Topic(1), 3);
     recorder.delivered(ActorId(1), Topic(1), MessageSize::alone(4), Span::from_secs(0.02));
     recorder.lost(ActorId(2), Topic(1), LossCause::Channel, MessageSize::alone(4));
-    recorder.in_flight(Topic(1), Span::from_secs(30.0));
+    recorder.in_flight(Topic(1), Some(Span::from_secs(30.0)));
     let record = recorder.finish(end());
     let mut expected = TopicFates {
         offered: 3,
@@ -83,7 +83,7 @@ fn a_broken_ledger_ends_the_run_with_every_number() {
         recorder.delivered(ActorId(1), Topic(0), MessageSize::alone(4), Span::ZERO);
     }
     recorder.lost(ActorId(2), Topic(0), LossCause::Channel, MessageSize::alone(4));
-    recorder.in_flight(Topic(0), Span::ZERO);
+    recorder.in_flight(Topic(0), Some(Span::ZERO));
     let _ = recorder.finish(end());
 }
 

@@ -55,7 +55,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
     recorder.note(ActorId(1), &Note::Role(Role(1)));
     recorder.transmitted(ActorId(1), Topic(1), MessageSize::alone(15));
     recorder.offered(Topic(1), 1);
-    recorder.in_flight(Topic(1), Span::from_secs(0.02));
+    recorder.in_flight(Topic(1), Some(Span::from_secs(0.02)));
     recorder.sample(SimTime::ZERO, &[Vec2::zeros(), Vec2::new(1.0, 0.0)]);
     recorder.sample(
         SimTime::from_secs(1.0),

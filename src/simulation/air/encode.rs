@@ -4,7 +4,7 @@ use std::any::type_name;
 
 use tokio_util::codec::{Decoder, Encoder};
 
-use super::{Air, Spoken};
+use super::{Air, Numbers, Spoken};
 use crate::engine::{ActorId, SimTime};
 use crate::happenings::{Observer, Sent};
 use crate::protocol::{Address, CodecError, Frame, MessageSize, Protocol, Topic};
@@ -37,8 +37,7 @@ impl<P: Protocol> Air<P> {
         if let Some(to) = to {
             self.check_addressee(sender, to, topic)?;
         }
-        let sequence = self.sequences[sender.index()];
-        self.sequences[sender.index()] = sequence.wrapping_add(1);
+        let sequence = Numbers::next(&mut self.numbers[sender.index()].message);
         observer.sent(&Sent {
             at: now,
             sender,

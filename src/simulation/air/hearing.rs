@@ -1,22 +1,74 @@
-//! What arrives at robots: read when they wake, lost where they cannot hear, settled at the end.
+//! What arrives at robots: decided when the radio knows, read when they wake, lost where they cannot hear, settled at the end.
 
 use super::Air;
 use super::transmit::copy_of;
 use crate::engine::{ActorId, SimTime, Span};
+use crate::faults::Health;
 use crate::happenings::Observer;
 use crate::protocol::{Protocol, Reception};
-use crate::radio::LossCause;
+use crate::radio::{Arrival, FrameId, LossCause};
 
 /// From an instant to the next.
 const INSTANT: Span = Span::from_nanos(1);
 
 impl<P: Protocol> Air<P> {
-    /// From `now` on `receiver` can hear or not. A copy is lost if its receiver cannot hear at the instant of its arrival;
-    /// one that arrived before can still be read.
-    pub fn set_hearing(&mut self, now: SimTime, receiver: ActorId, hears: bool, observer: &mut impl Observer) {
-        if hears == self.hears(receiver) {
-            return;
+    /// When the radio has something to do next.
+    pub fn next_event(&self) -> SimTime {
+        self.medium.next()
+    }
+
+    /// Lets the radio do what is due at `now`.
+    pub fn advance(&mut self, now: SimTime, observer: &mut impl Observer) {
+        while self.medium.next() <= now {
+            if let Some(frame) = self.medium.advance(now, &mut self.fates) {
+                self.decide(now, frame, observer);
+            }
         }
+    }
+
+    /// Lets the fates of open copies of `frame` take effect, which the radio has decided at `now`.
+    fn decide(&mut self, now: SimTime, frame: FrameId, observer: &mut impl Observer) {
+        for (receiver, cause) in self.fates.losses.drain(..) {
+            let lost = self.inboxes[receiver.index()].lose(frame, |reception| {
+                observer.lost(&copy_of::<P>(&reception.frame, receiver), cause, now);
+            });
+            assert!(
+                lost,
+                "the radio loses a copy of {frame:?} at robot {receiver}, where none is open"
+            );
+        }
+        for arrival in self.fates.arrivals.drain(..) {
+            let Arrival {
+                receiver,
+                at,
+                displacement,
+            } = arrival;
+            assert!(at >= now, "the radio decides at {now} what has arrived at {at}");
+            let arrives = self.inboxes[receiver.index()].arrive(frame, at, displacement, |frame| {
+                observer.arrives(&copy_of::<P>(frame, receiver), at);
+            });
+            assert!(
+                arrives,
+                "the radio delivers a copy of {frame:?} to robot {receiver}, for whom none is open"
+            );
+            if self.tell_reached {
+                self.reached.push(receiver);
+            }
+        }
+        self.fates.open.clear();
+    }
+
+    /// From `now` on the radio of `robot` does what its `health` allows. A copy is lost if its receiver cannot hear at the instant of its arrival;
+    /// one that arrived before can still be read.
+    pub fn set_health(&mut self, now: SimTime, robot: ActorId, health: Health, observer: &mut impl Observer) {
+        let Health { sends, hears, .. } = health;
+        self.medium.enable(now, robot, sends, hears);
+        if hears != self.hears(robot) {
+            self.set_hearing(now, robot, hears, observer);
+        }
+    }
+
+    fn set_hearing(&mut self, now: SimTime, receiver: ActorId, hears: bool, observer: &mut impl Observer) {
         if hears {
             self.lose_unheard(now, receiver, observer);
             self.deaf_since[receiver.index()] = SimTime::NEVER;
@@ -76,7 +128,7 @@ impl<P: Protocol> Air<P> {
         into.append(&mut self.reached);
     }
 
-    /// Settles what still waits when the run ends at `end`: arrived means delivered, else in flight.
+    /// Settles what still waits when the run ends at `end`: arrived means delivered; else, known to arrive or open, in flight.
     pub fn settle(&mut self, end: SimTime, observer: &mut impl Observer) {
         for receiver in 0..self.inboxes.len() as u32 {
             self.lose_unheard(end + INSTANT, ActorId(receiver), observer);
@@ -87,7 +139,7 @@ impl<P: Protocol> Air<P> {
                 if reception.at <= end {
                     observer.delivered(&copy, reception.at, None);
                 } else {
-                    observer.in_flight(&copy, reception.at);
+                    observer.in_flight(&copy, Some(reception.at).filter(|at| *at < SimTime::NEVER));
                 }
             }
         }

@@ -1,4 +1,8 @@
-//! Between a robot that sends and the robots that hear: encode, offer to the medium, put arrivals into inboxes.
+//! Between a robot that sends and the robots that hear: encode, hand frames to the medium, put copies into inboxes.
+//!
+//! Whatever the radio, a copy stands in its receiver's inbox from the moment at which its frame is handed over until it is read or known
+//! to be lost; while its fate is open it has no arrival yet (`NEVER`). So a frame that is under way takes no place of its own, and what an inbox
+//! holds when the run ends is what is in flight.
 
 use bytes::BytesMut;
 
@@ -6,26 +10,36 @@ use super::error::RunError;
 use super::inbox::Inbox;
 use crate::engine::{ActorId, SimTime, Span, outgrows_cache, prefetch};
 use crate::faults::Faults;
+use crate::geometry::Vec2;
 use crate::happenings::Observer;
+use crate::metrics::HeaderBytes;
 use crate::motion::World;
 use crate::protocol::{Frame, Output, Protocol};
-use crate::radio::{Listener, LossCause, Medium};
+use crate::radio::{Fates, Listener, Medium};
 
 mod encode;
 mod hearing;
 mod transmit;
 
-/// A copy that will arrive.
-struct Arrival {
-    receiver: ActorId,
-    at: SimTime,
-    displacement: [f32; 2],
-}
-
 /// A message of the present frame, and the robot that it is for if it is for one.
 struct Spoken<M> {
     frame: Frame<M>,
     to: Option<ActorId>,
+}
+
+/// The numbers of a robot's next message and of its next frame: in step, unless messages share frames.
+#[derive(Clone, Copy, Default)]
+struct Numbers {
+    message: u32,
+    frame: u32,
+}
+
+impl Numbers {
+    fn next(number: &mut u32) -> u32 {
+        let next = *number;
+        *number = next.wrapping_add(1);
+        next
+    }
 }
 
 /// What a transmission depends on beside the radio: where everybody is, and what fails.
@@ -39,11 +53,14 @@ pub struct Surroundings<'a> {
 
 /// The radio's side of a run.
 pub struct Air<P: Protocol> {
-    medium: Medium,
+    medium: Box<dyn Medium>,
+    range: f64,
+    headers: HeaderBytes,
     codec: P::Codec,
     inboxes: Vec<Inbox<P::Heard>>,
-    /// The payload under way, and who hears the present sender: buffers, kept to be used again.
+    /// The payload under way, where the present sender is and who hears it: buffers, kept to be used again.
     payload: BytesMut,
+    position: Vec2,
     listeners: Vec<Listener>,
     /// While a frame for some of them is under way, all of them; else a buffer.
     all_listeners: Vec<Listener>,
@@ -51,13 +68,9 @@ pub struct Air<P: Protocol> {
     /// The messages of the present frame: one, or all of a wake where they share one.
     aboard: Vec<Spoken<P::Heard>>,
     piggyback: bool,
-    /// For each robot the number of its next message.
-    sequences: Vec<u32>,
-    /// The copies of the present frame that will arrive. Fates are decided first and inboxes filled after: the one is
-    /// arithmetic, the other waits for memory, and apart each runs at its own pace.
-    arrivals: Vec<Arrival>,
-    /// Those that will not, and why.
-    losses: Vec<(ActorId, LossCause)>,
+    numbers: Vec<Numbers>,
+    /// What becomes of the copies of the present frame. That is decided first and inboxes are filled after.
+    fates: Fates,
     /// Which listeners the faults of links hinder, and with what probability; empty where nothing is wrong with links.
     hindrances: Vec<f64>,
     /// The listeners that the present frame reaches in spite of the faults of links.
@@ -74,22 +87,30 @@ pub struct Air<P: Protocol> {
 }
 
 impl<P: Protocol> Air<P> {
-    /// An empty air around `robots` robots. `piggyback`: whether the messages of a wake share a frame; `wake_on_reception`:
-    /// whether [`reached`](Self::take_reached) is kept.
-    pub fn new(medium: Medium, robots: usize, piggyback: bool, wake_on_reception: bool) -> Self {
+    /// An empty air around `robots` robots. `headers`: what frames carry beside payloads; `piggyback`: whether the messages of a wake share a frame;
+    /// `wake_on_reception`: whether [`reached`](Self::take_reached) is kept.
+    pub fn new(
+        medium: Box<dyn Medium>,
+        robots: usize,
+        headers: HeaderBytes,
+        piggyback: bool,
+        wake_on_reception: bool,
+    ) -> Self {
         Self {
+            range: medium.range(),
             medium,
+            headers,
             codec: P::Codec::default(),
             inboxes: std::iter::repeat_with(Inbox::default).take(robots).collect(),
             payload: BytesMut::with_capacity(256),
+            position: Vec2::zeros(),
             listeners: Vec::new(),
             all_listeners: Vec::new(),
             all_hindrances: Vec::new(),
             aboard: Vec::new(),
             piggyback,
-            sequences: vec![0; robots],
-            arrivals: Vec::new(),
-            losses: Vec::new(),
+            numbers: vec![Numbers::default(); robots],
+            fates: Fates::default(),
             hindrances: Vec::new(),
             reachable: Vec::new(),
             deaf_since: vec![SimTime::NEVER; robots],
@@ -103,14 +124,13 @@ impl<P: Protocol> Air<P> {
     /// Asks for what is kept of `robot`, which is to wake soon.
     pub fn prefetch_row(&self, robot: ActorId) {
         prefetch(&self.inboxes[robot.index()]);
-        prefetch(&self.sequences[robot.index()]);
-        self.medium.prefetch_row(robot);
+        prefetch(&self.numbers[robot.index()]);
     }
 
     /// Asks for what waits for `robot`, and for who will hear it.
     pub fn prefetch_contents(&self, robot: ActorId, world: &World) {
         self.inboxes[robot.index()].prefetch_contents();
-        world.prefetch_neighbours(robot, self.medium.range());
+        world.prefetch_neighbours(robot, self.range);
     }
 
     /// So long what a robot sends reaches nobody.
@@ -128,10 +148,11 @@ impl<P: Protocol> Air<P> {
         observer: &mut impl Observer,
     ) -> Result<(), RunError> {
         let Surroundings { world, faults } = place;
+        self.position = world.position(sender, now);
         self.listeners.clear();
         let Self { listeners, inboxes, .. } = self;
         let prefetches = self.prefetches;
-        world.for_each_within(sender, now, self.medium.range(), |id, from_sender| {
+        world.for_each_within(sender, now, self.range, |id, from_sender| {
             if prefetches {
                 prefetch(&inboxes[id.index()]);
             }
@@ -142,7 +163,7 @@ impl<P: Protocol> Air<P> {
         });
         self.hindrances.clear();
         if faults.trouble_links() {
-            let here = world.position(sender, now);
+            let here = self.position;
             let hindrance = |listener: &Listener| {
                 let there = world.position(listener.id, now);
                 faults.link_loss((sender, here), (listener.id, there))

@@ -2,12 +2,12 @@
 
 use std::borrow::Borrow as _;
 
-use super::{Air, Arrival, Spoken};
+use super::{Air, Numbers, Spoken};
 use crate::engine::{ActorId, SimTime};
 use crate::faults::Faults;
 use crate::happenings::{Copy, Observer};
 use crate::protocol::{Address, Frame, MessageSize, Protocol, Reception, Topic};
-use crate::radio::{Fate, Listener, LossCause, Medium};
+use crate::radio::{Fate, FrameId, LossCause, Transmission};
 
 /// A message of a frame at one receiver. `ADDRESSED`: whether the frame is not simply for everyone.
 struct AtReceiver<'a, P: Protocol, const ADDRESSED: bool> {
@@ -76,27 +76,6 @@ fn copies_for<P: Protocol, const ADDRESSED: bool>(
     })
 }
 
-/// What becomes of the next frame of `sender` at each of `listeners`. The same for all protocols, so that it is compiled once and
-/// the medium's arithmetic into it.
-#[inline(never)]
-fn decide(
-    medium: &mut Medium,
-    now: SimTime,
-    sender: ActorId,
-    listeners: &[Listener],
-    arrivals: &mut Vec<Arrival>,
-    losses: &mut Vec<(ActorId, LossCause)>,
-) {
-    medium.transmit(now, sender, listeners.iter().copied(), |receiver, fate| match fate {
-        Fate::Arrives { at, displacement } => arrivals.push(Arrival {
-            receiver,
-            at,
-            displacement,
-        }),
-        Fate::Lost(cause) => losses.push((receiver, cause)),
-    });
-}
-
 impl<P: Protocol> Air<P> {
     /// Transmits the messages `aboard`, one at least and all of one sender, as one frame.
     #[inline(never)]
@@ -110,7 +89,7 @@ impl<P: Protocol> Air<P> {
         if aboard.iter().all(|spoken| spoken.to.is_none()) {
             return self.transmit::<false>(now, aboard, faults, observer);
         }
-        self.give_up_far(aboard);
+        self.give_up_far(now, aboard, observer);
         let everyone = P::OVERHEARS || aboard.iter().any(|spoken| spoken.to.is_none());
         if !everyone {
             self.narrow(aboard);
@@ -123,10 +102,15 @@ impl<P: Protocol> Air<P> {
     }
 
     /// Loses what is for robots out of range.
-    fn give_up_far(&mut self, aboard: &[Spoken<P::Heard>]) {
-        for to in aboard.iter().filter_map(|spoken| spoken.to) {
-            if !self.is_in_range(to) && !self.losses.iter().any(|loss| loss.0 == to) {
-                self.losses.push((to, LossCause::BelowSensitivity));
+    fn give_up_far(&mut self, now: SimTime, aboard: &[Spoken<P::Heard>], observer: &mut impl Observer) {
+        for (place, spoken) in aboard.iter().enumerate() {
+            let Some(far) = spoken.to.filter(|to| !self.is_in_range(*to)) else {
+                continue;
+            };
+            if aboard[..place].iter().all(|earlier| earlier.to != Some(far)) {
+                for at_receiver in copies_for::<P, true>(far, false, aboard) {
+                    observer.lost(&at_receiver.copy(far), LossCause::BelowSensitivity, now);
+                }
             }
         }
     }
@@ -157,30 +141,37 @@ impl<P: Protocol> Air<P> {
         faults: &Faults,
         observer: &mut impl Observer,
     ) {
-        let sender = aboard[0].frame.sender;
+        let Frame { sender, sequence, .. } = aboard[0].frame;
+        let number = Numbers::next(&mut self.numbers[sender.index()].frame);
         if !self.hindrances.is_empty() {
-            self.hinder(sender, faults);
+            self.hinder(sender, number, faults);
         }
-        let Self {
-            medium,
-            arrivals,
-            losses,
-            listeners,
-            reachable,
-            hindrances,
-            ..
-        } = self;
-        let listeners = if hindrances.is_empty() { listeners } else { reachable };
-        decide(medium, now, sender, listeners, arrivals, losses);
+        let to = aboard[0]
+            .to
+            .filter(|to| aboard.iter().all(|spoken| spoken.to == Some(*to)));
+        let frame = Transmission {
+            at: now,
+            frame: FrameId::with_messages(sender, number, sequence, aboard.len() as u32),
+            bytes: self.bytes(aboard),
+            to,
+            position: self.position,
+            listeners: if self.hindrances.is_empty() {
+                &self.listeners
+            } else {
+                &self.reachable
+            },
+        };
+        self.medium.transmit(&frame, &mut self.fates);
+        debug_assert_eq!(self.fates.len(), self.listeners.len(), "each listener has one fate");
         if self.prefetches {
             self.prefetch_fates(P::topic(aboard[0].frame.message.borrow()), observer);
         }
-        for (receiver, cause) in self.losses.drain(..) {
-            for at_receiver in copies_for::<P, ADDRESSED>(receiver, cause != LossCause::BelowSensitivity, aboard) {
+        for (receiver, cause) in self.fates.losses.drain(..) {
+            for at_receiver in copies_for::<P, ADDRESSED>(receiver, true, aboard) {
                 observer.lost(&at_receiver.copy(receiver), cause, now);
             }
         }
-        for arrival in self.arrivals.drain(..) {
+        for arrival in self.fates.arrivals.drain(..) {
             if self.tell_reached {
                 self.reached.push(arrival.receiver);
             }
@@ -194,25 +185,50 @@ impl<P: Protocol> Air<P> {
                 });
             }
         }
+        if !self.fates.open.is_empty() {
+            self.await_fates::<ADDRESSED>(aboard);
+        }
+    }
+
+    /// The length of a frame with the messages `aboard`, headers included.
+    #[inline]
+    fn bytes(&self, aboard: &[Spoken<P::Heard>]) -> u32 {
+        let message =
+            |spoken: &Spoken<P::Heard>| u32::from(self.headers.message) + u32::from(spoken.frame.payload_bytes);
+        u32::from(self.headers.frame) + aboard.iter().map(message).sum::<u32>()
+    }
+
+    /// Puts copies whose fates are open into the inboxes, where they wait for them.
+    #[inline(never)]
+    fn await_fates<const ADDRESSED: bool>(&mut self, aboard: &[Spoken<P::Heard>]) {
+        for receiver in self.fates.open.drain(..) {
+            let inbox = &mut self.inboxes[receiver.index()];
+            for at_receiver in copies_for::<P, ADDRESSED>(receiver, true, aboard) {
+                inbox.push(Reception {
+                    at: SimTime::NEVER,
+                    frame: at_receiver.into_frame(),
+                    displacement: [0.0; 2],
+                });
+            }
+        }
     }
 
     /// Asks for where the fates of the present frame are written down.
     fn prefetch_fates(&self, topic: Topic, observer: &impl Observer) {
-        for arrival in &self.arrivals {
+        for arrival in &self.fates.arrivals {
             self.inboxes[arrival.receiver.index()].prefetch_end();
         }
-        for &(receiver, cause) in &self.losses {
+        for &(receiver, cause) in &self.fates.losses {
             observer.prefetch_lost(receiver, topic, cause);
         }
     }
 
-    /// Finds the listeners that the frame reaches in spite of the faults of links; the other copies are lost.
-    fn hinder(&mut self, sender: ActorId, faults: &Faults) {
+    /// Finds the listeners that frame `number` of `sender` reaches in spite of the faults of links; the other copies are lost.
+    fn hinder(&mut self, sender: ActorId, number: u32, faults: &Faults) {
         self.reachable.clear();
-        let number = self.medium.upcoming(sender);
         for (listener, &loss) in self.listeners.iter().zip(&self.hindrances) {
             if faults.stops(loss, sender, listener.id, number) {
-                self.losses.push((listener.id, LossCause::LinkFault));
+                self.fates.push(listener.id, Fate::Lost(LossCause::LinkFault));
             } else {
                 self.reachable.push(*listener);
             }

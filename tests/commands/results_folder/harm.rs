@@ -112,9 +112,9 @@ fn a_kept_trial_that_has_changed_runs_again() {
         .unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130));
     // A digit is another: the file still reads as a trial.
-    let text = fs::read_to_string(&kept).unwrap();
-    let at = text.find("\"events\":").unwrap() + "\"events\":".len();
-    let mut bytes = text.into_bytes();
+    let mut bytes = fs::read(&kept).unwrap();
+    let key = b"\"events\":";
+    let at = bytes.windows(key.len()).position(|there| there == key).unwrap() + key.len();
     bytes[at] = if bytes[at] == b'9' { b'8' } else { bytes[at] + 1 };
     fs::write(&kept, bytes).unwrap();
     timed(dir.path(), &interrupted);

@@ -4,7 +4,7 @@
 //! times are whole nanoseconds, which moves a distribution function by at most its density times 0.5 ns, below 1e-5
 //! here, where the Kolmogorov–Smirnov distance may reach 0.016.
 
-use desim::radio::{Fate, LatencyConfig, LossConfig};
+use desim::radio::{Fate, LatencyConfig, LossConfig, Medium};
 use statrs::distribution::{Continuous, ContinuousCDF, Exp, Gamma, LogNormal, Normal, Uniform};
 use statrs::statistics::Distribution;
 
@@ -25,7 +25,7 @@ fn latencies(config: &LatencyConfig) -> Vec<Vec<f64>> {
 fn latency(frame: u32, fate: Fate) -> f64 {
     match fate {
         Fate::Arrives { at, .. } => at.since(sent(frame)).as_secs(),
-        Fate::Lost(_) => f64::INFINITY,
+        Fate::Lost(_) | Fate::Open => f64::INFINITY,
     }
 }
 
@@ -142,7 +142,7 @@ fn no_latency_falls_short_of_the_lookahead_which_is_the_least_that_the_model_all
     ] {
         let mut radio = losing(LossConfig::None);
         radio.latency = config.clone();
-        let lookahead = medium(&radio, 1).lookahead().as_secs();
+        let lookahead = medium(&radio, 1).disk.lookahead().as_secs();
         assert!((lookahead - least).abs() < 1e-12, "{config:?}: {lookahead}");
         assert!(latencies(&config).concat().iter().all(|&latency| latency >= lookahead));
     }

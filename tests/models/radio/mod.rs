@@ -12,10 +12,14 @@ mod sensing;
 mod statistics;
 mod timeouts;
 
+use std::collections::BTreeMap;
+
 use desim::engine::{ActorId, SimTime, Span, Streams};
 use desim::geometry::Vec2;
 use desim::quantity::{NonNegative, Positive, Probability};
-use desim::radio::{Fate, LatencyConfig, Listener, LossConfig, Medium, RadioConfig};
+use desim::radio::{
+    Disk, Fate, Fates, FrameId, LatencyConfig, Listener, LossConfig, Medium, RadioConfig, Transmission,
+};
 
 /// Time between two frames of a sender.
 const INTERVAL: f64 = 0.1;
@@ -55,12 +59,50 @@ fn losing(loss: LossConfig) -> RadioConfig {
     }
 }
 
-fn medium(config: &RadioConfig, robots: u32) -> Medium {
-    Medium::new(config, &Streams::new(20_260_101, 0), robots as usize)
+/// A disk radio, and for each robot the number of its next frame.
+struct Channel {
+    disk: Disk,
+    numbers: Vec<u32>,
+}
+
+impl Channel {
+    /// Hands the next frame of `sender` over at `at`, and calls `receive` for each of `listeners`.
+    fn transmit(
+        &mut self,
+        at: SimTime,
+        sender: ActorId,
+        listeners: impl Iterator<Item = Listener>,
+        mut receive: impl FnMut(ActorId, Fate),
+    ) {
+        let listeners: Vec<Listener> = listeners.collect();
+        let number = &mut self.numbers[sender.index()];
+        let frame = Transmission {
+            at,
+            frame: FrameId::new(sender, *number),
+            bytes: 9,
+            to: None,
+            position: Vec2::zeros(),
+            listeners: &listeners,
+        };
+        *number += 1;
+        let mut fates = Fates::default();
+        self.disk.transmit(&frame, &mut fates);
+        let fates: BTreeMap<ActorId, Fate> = fates.drain().collect();
+        for listener in listeners {
+            receive(listener.id, fates[&listener.id]);
+        }
+    }
+}
+
+fn medium(config: &RadioConfig, robots: u32) -> Channel {
+    Channel {
+        disk: Disk::new(config, &Streams::new(20_260_101, 0), robots as usize),
+        numbers: vec![0; robots as usize],
+    }
 }
 
 /// Robots `ids`, each with the sender at `distance` metres.
-fn listeners(ids: std::ops::Range<u32>, distance: f64) -> impl Iterator<Item = Listener> + Clone {
+fn listeners(ids: std::ops::Range<u32>, distance: f64) -> impl Iterator<Item = Listener> {
     ids.map(move |id| Listener {
         id: ActorId(id),
         sender: Vec2::new(distance, 0.0),

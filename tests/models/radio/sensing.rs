@@ -22,7 +22,7 @@ fn sensed(range_noise: f64, bearing_noise_degrees: f64) -> (Vec<f64>, Vec<f64>) 
         Fate::Arrives {
             displacement: [x, y], ..
         } => (f64::from(x.hypot(y)), f64::from(y.atan2(x))),
-        Fate::Lost(_) => (f64::NAN, f64::NAN),
+        Fate::Lost(_) | Fate::Open => (f64::NAN, f64::NAN),
     };
     fates(&config, 20, 2000).concat().into_iter().map(polar).unzip()
 }

@@ -1,0 +1,249 @@
+//! The disk radio: whoever is within its range hears, but for what the channel drops. The instant case of a medium.
+
+use super::LossCause;
+use super::config::RadioConfig;
+use super::draw::{CHANNEL, FrameCopy, LatencyBits};
+use super::latency::Latency;
+use super::loss::Loss;
+use super::medium::{Fate, Fates, Listener, Medium, RadioKind, Transmission};
+use super::sensing::Sensing;
+use crate::engine::{KeyedStreams, SimTime, Span, Streams};
+
+/// The disk radio of one run. Its frames take no time on air and do not meet: the fate of each copy is settled when its frame is handed over.
+#[derive(Debug)]
+pub struct Disk {
+    range: f64,
+    loss: Loss,
+    latency: Latency,
+    channel: KeyedStreams,
+    /// The latency of every copy, if none is ever lost or late: no fate needs its channel's stream then.
+    certain: Option<Span>,
+    sensing: Sensing,
+    /// What the copies of the present frame meet in their channels: a buffer.
+    met: Vec<[u64; 2]>,
+}
+
+impl RadioKind for RadioConfig {
+    fn medium(&self, streams: &Streams, robots: usize) -> Box<dyn Medium> {
+        Box::new(Disk::new(self, streams, robots))
+    }
+}
+
+impl Medium for Disk {
+    fn range(&self) -> f64 {
+        self.range
+    }
+
+    fn lookahead(&self) -> Span {
+        self.latency.least()
+    }
+
+    fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+        let copies = frame.listeners.iter().map(|&listener| {
+            let copy = FrameCopy {
+                sender: frame.frame.sender,
+                receiver: listener.id,
+                sequence: frame.frame.number,
+            };
+            (listener, copy)
+        });
+        if let Some(latency) = self.certain {
+            for (listener, copy) in copies {
+                fates.push(listener.id, self.arrival(frame.at + latency, copy, listener));
+            }
+            return;
+        }
+        // First what all copies meet, which the processor does for several at a time, and then what that leads to, which it
+        // has to guess at.
+        let mut met = std::mem::take(&mut self.met);
+        met.clear();
+        met.extend(copies.clone().map(|(_, copy)| copy.channel(self.channel)));
+        for ((listener, copy), &bits) in copies.zip(&met) {
+            fates.push(listener.id, self.fate(frame.at, copy, listener, bits));
+        }
+        self.met = met;
+    }
+}
+
+impl Disk {
+    /// The radio that `config` describes, for robots 0 to `robots` − 1, drawing from the `streams` of their trial.
+    ///
+    /// # Panics
+    /// If `config` has [`problems`](RadioConfig::problems): a scenario is checked before it is run.
+    #[must_use]
+    pub fn new(config: &RadioConfig, streams: &Streams, robots: usize) -> Self {
+        let problems = config.problems();
+        assert!(
+            problems.is_empty(),
+            "the radio's configuration is unusable: {problems:?}"
+        );
+        let range = config.range.get();
+        let loss = Loss::new(&config.loss, range, *streams, robots);
+        let latency = Latency::new(&config.latency);
+        Self {
+            range,
+            channel: streams.keyed(CHANNEL),
+            certain: latency.constant().filter(|_| loss.is_none()),
+            loss,
+            latency,
+            sensing: Sensing::new(&config.sensing, *streams),
+            met: Vec::new(),
+        }
+    }
+
+    // Not inlined, the fate goes through memory and back: a fifth more time a reception.
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
+    fn fate(&mut self, now: SimTime, copy: FrameCopy, listener: Listener, [loss, latency]: [u64; 2]) -> Fate {
+        let probability = self.loss.probability(copy, listener.sender.norm_squared());
+        if unit_interval(loss) < probability {
+            return Fate::Lost(LossCause::Channel);
+        }
+        let mut bits = LatencyBits::new(latency, copy, self.channel);
+        self.arrival(now + self.latency.draw(&mut bits), copy, listener)
+    }
+
+    #[inline]
+    fn arrival(&self, at: SimTime, copy: FrameCopy, listener: Listener) -> Fate {
+        Fate::Arrives {
+            at,
+            displacement: self.sensing.displacement(copy, listener.sender),
+        }
+    }
+}
+
+/// 64 random bits as a number in [0, 1), on a grid of 2⁻⁵³: below 1, so that a probability of 1 always happens, and not
+/// below 0, so that one of 0 never does.
+#[inline]
+fn unit_interval(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::engine::ActorId;
+    use crate::geometry::Vec2;
+    use crate::quantity::{NonNegative, Positive, Probability};
+    use crate::radio::{FrameId, LatencyConfig, LossConfig, SensingConfig};
+
+    const ROBOTS: u32 = 30;
+
+    fn listener(id: u32) -> Listener {
+        Listener {
+            id: ActorId(id),
+            sender: Vec2::new(0.05 * f64::from(id), -0.5),
+        }
+    }
+
+    /// Radios with each loss model, random latency and noise.
+    fn radios() -> impl Strategy<Value = RadioConfig> {
+        let probability = Probability::new;
+        let losses = prop::sample::select(vec![
+            LossConfig::None,
+            LossConfig::Bernoulli(probability(0.3)),
+            LossConfig::GilbertElliott {
+                good_to_bad: probability(0.2),
+                bad_to_good: probability(0.3),
+                good_loss: probability(0.1),
+                bad_loss: probability(0.9),
+            },
+            LossConfig::Distance {
+                at_range: probability(0.8),
+                exponent: Positive::new(1.5),
+            },
+        ]);
+        losses.prop_map(|loss| RadioConfig {
+            loss,
+            latency: LatencyConfig::Normal {
+                mean: NonNegative::new(0.01),
+                std_dev: NonNegative::new(0.003),
+                min: NonNegative::new(0.001),
+            },
+            sensing: SensingConfig {
+                range_noise: NonNegative::new(0.1),
+                bearing_noise: NonNegative::new(5.0),
+            },
+            ..RadioConfig::default()
+        })
+    }
+
+    fn disk(config: &RadioConfig) -> Disk {
+        Disk::new(config, &Streams::new(3, 1), ROBOTS as usize)
+    }
+
+    /// The fates at `hearing` of frame `number` of robot 0: of what arrives, then of what is lost.
+    fn transmit(disk: &mut Disk, number: u32, hearing: &[u32]) -> Vec<(u32, Fate)> {
+        let listeners: Vec<Listener> = hearing.iter().map(|&id| listener(id)).collect();
+        let frame = Transmission {
+            at: SimTime::from_secs(1.0),
+            frame: FrameId::new(ActorId(0), number),
+            bytes: 9,
+            to: None,
+            position: Vec2::zeros(),
+            listeners: &listeners,
+        };
+        let mut fates = Fates::default();
+        disk.transmit(&frame, &mut fates);
+        fates.drain().map(|(id, fate)| (id.0, fate)).collect()
+    }
+
+    #[test]
+    fn a_perfect_radio_delivers_after_its_constant_latency_with_the_true_displacement() {
+        let fates = transmit(&mut disk(&RadioConfig::default()), 0, &[10]);
+        let arrival = Fate::Arrives {
+            at: SimTime::from_secs(1.1),
+            displacement: [0.5, -0.5],
+        };
+        assert_eq!(fates, [(10, arrival)]);
+    }
+
+    #[test]
+    #[should_panic(expected = "the radio's configuration is unusable")]
+    fn a_configuration_with_problems_is_refused() {
+        let latency = LatencyConfig::Normal {
+            mean: NonNegative::new(0.01),
+            std_dev: NonNegative::new(0.001),
+            min: NonNegative::new(1.0),
+        };
+        let _ = disk(&RadioConfig {
+            latency,
+            ..RadioConfig::default()
+        });
+    }
+
+    proptest! {
+        #[test]
+        fn every_listener_has_one_fate_and_none_arrives_before_it_could(
+            config in radios(), hearing in prop::collection::btree_set(1..ROBOTS, 0..25), number in any::<u32>(),
+        ) {
+            let hearing = Vec::from_iter(hearing);
+            let mut fates = transmit(&mut disk(&config), number, &hearing);
+            for (_, fate) in &fates {
+                match fate {
+                    Fate::Arrives { at, .. } => prop_assert!(*at >= SimTime::from_secs(1.001)),
+                    Fate::Lost(cause) => prop_assert_eq!(*cause, LossCause::Channel),
+                    Fate::Open => prop_assert!(false, "a disk knows at once"),
+                }
+            }
+            fates.sort_by_key(|(id, _)| *id);
+            prop_assert_eq!(fates.iter().map(|(id, _)| *id).collect::<Vec<_>>(), hearing);
+        }
+
+        #[test]
+        fn a_fate_depends_neither_on_who_else_listens_nor_on_their_order(
+            config in radios(),
+            frames in prop::collection::vec(prop::collection::btree_set(1..ROBOTS, 0..20), 1..20),
+        ) {
+            let (mut among_others, mut alone) = (disk(&config), disk(&config));
+            for (number, hearing) in (0..).zip(frames) {
+                let backwards: Vec<u32> = hearing.iter().rev().copied().collect();
+                let fate = transmit(&mut among_others, number, &backwards).into_iter().find(|(id, _)| *id == 7);
+                let only: Vec<u32> = hearing.into_iter().filter(|id| *id == 7).collect();
+                prop_assert_eq!(fate, transmit(&mut alone, number, &only).pop());
+            }
+        }
+    }
+}
