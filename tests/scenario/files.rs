@@ -233,9 +233,9 @@ fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_
     let lossy = [heartbeat, "detector=Timeout(0.15)", "radio.loss=Bernoulli(0.4)"];
     for (given, field, what) in [
         // 40 robots in a cluster, all in range: 1,560 pairs err (1 − p) p / η = 2.4 times a second each.
-        (vec!["time_limit=4000"], "time_limit", "for suspicions"),
+        (vec!["time_limit=1.2e5"], "time_limit", "for suspicions"),
         (
-            vec!["time_limit=4e4", "metrics.sample_interval=0.001"],
+            vec!["radio.loss=None", "time_limit=4e5", "metrics.sample_interval=0.001"],
             "metrics.sample_interval",
             "for samples",
         ),
@@ -280,7 +280,7 @@ fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_
             .map(|found| found.message)
             .collect::<Vec<_>>()
     };
-    let large: Vec<&str> = lossy.iter().copied().chain(["time_limit=1500"]).collect();
+    let large: Vec<&str> = lossy.iter().copied().chain(["time_limit=3e4"]).collect();
     assert!(
         warned(&large).iter().any(|message| message.contains("GB of memory")),
         "{:?}",
