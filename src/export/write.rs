@@ -8,9 +8,9 @@ use super::place::{FolderError, WriteError, failed, json};
 use super::scene::Scene;
 use super::tables::Tables;
 use crate::experiment::{FinishedTrial, Parts};
+use crate::metrics::summary::Trials;
 use crate::metrics::{Summary, TrialRecord};
 use crate::scenario::Scenario;
-use crate::spool::Spool;
 
 /// Of which trials to draw pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +46,8 @@ pub fn write(
     };
     let mut files: Vec<String> = Vec::new();
     let mut tables = Tables::create(parts.dir(), names, scene.targets.len()).map_err(failed("write", parts.dir()))?;
-    let mut records = Vec::new();
+    let figures = scenario.figures();
+    let mut trials = Trials::new(&figures);
     for trial in 0..scenario.trials {
         let part = parts.load(trial)?;
         tables.append(&part.record).map_err(failed("write", parts.dir()))?;
@@ -54,15 +55,11 @@ pub fn write(
             files.extend(draw(folder, &scene, &part.record)?);
         }
         manifest.trials.push(entry(&part));
-        // Paths are the bulk of a record, and the summary has no use for them.
-        records.push(TrialRecord {
-            trajectories: Spool::default(),
-            ..part.record
-        });
+        trials.add(part.record);
     }
     let tables = tables.finish().map_err(failed("write", parts.dir()))?;
     files.extend(tables.into_iter().map(str::to_owned));
-    let summary = Summary::by(&scenario.figures(), &scenario.name, names.topics, names.roles, &records);
+    let summary = trials.summary(&scenario.name, names.topics, names.roles);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());
     for name in files {

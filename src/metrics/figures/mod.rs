@@ -20,9 +20,8 @@ mod registry;
 
 pub use detection::{detection_times, mistake_durations};
 pub use figure::{Better, COMPLETION, Figure, Sample, parts, pool};
-pub use registry::Registry;
+pub use registry::{Estimated, Registry};
 
-pub(super) use detection::mistakes;
 pub(super) use gossip::Pairs;
 pub(super) use healing::mending;
 pub(super) use mission::completion;

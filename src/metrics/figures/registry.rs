@@ -6,7 +6,7 @@ use super::figure::{Better, Figure, Sample, pool};
 use crate::metrics::noted_figure::NotedFigure;
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::SECONDS;
-use crate::statistics::{Estimate, Estimator, Lasting, Part, Times};
+use crate::statistics::{Estimate, Estimator, Part, Times};
 
 /// How a figure is read off a trial.
 type Reading = Rc<dyn Fn(&TrialRecord) -> Sample>;
@@ -25,21 +25,25 @@ pub(super) struct Entry {
     is_listed: bool,
 }
 
+/// A figure over trials.
+#[derive(Clone, Debug)]
+pub struct Estimated<'a> {
+    /// Which.
+    pub figure: &'a Figure,
+    /// Whether it stands in the general list of summaries and reports, and not at a place of its own.
+    pub is_listed: bool,
+    /// The estimate.
+    pub estimate: Estimate,
+    /// How many values were cut off: of times, of the times themselves, else of the trials.
+    pub cut_off: u64,
+    /// What a mean of times is restricted to: the longest, if it was cut off.
+    pub restricted_to: Option<f64>,
+}
+
 impl Entry {
     /// Summaries and reports have no place of their own for it: it stands in their general list.
     pub(super) fn list(&mut self) {
         self.is_listed = true;
-    }
-
-    fn read(&self, records: &[TrialRecord]) -> (Vec<Sample>, Lasting) {
-        let mut samples: Vec<Sample> = records.iter().map(|record| (self.reading)(record)).collect();
-        let lasting = pool(&mut samples).unwrap_or_default();
-        (samples, lasting)
-    }
-
-    fn estimate(&self, records: &[TrialRecord]) -> (Estimate, Lasting) {
-        let (samples, lasting) = self.read(records);
-        (self.figure.estimate(&samples), lasting)
     }
 }
 
@@ -55,26 +59,22 @@ impl Registry {
         self.entries.iter().map(|entry| (entry.reading)(record)).collect()
     }
 
-    /// The figure called `key` over the trials of `records`, and what is known of its times if it is their mean. Nothing where there is no
-    /// such figure.
+    /// The figures, each with what all trials tell of it: `samples` has a list of those for each figure, in order.
     #[must_use]
-    pub fn estimate(&self, key: &str, records: &[TrialRecord]) -> (Estimate, Lasting) {
-        let entry = self.entries.iter().find(|entry| entry.figure.key == key);
-        entry.map(|entry| entry.estimate(records)).unwrap_or_default()
-    }
-
-    /// The figures of the general list over the trials of `records`, in order, with how many values were cut off: of times, of the times
-    /// themselves, else of the trials.
-    #[must_use]
-    pub fn listed(&self, records: &[TrialRecord]) -> Vec<(&Figure, Estimate, u64)> {
-        let listed = self.entries.iter().filter(|entry| entry.is_listed);
-        let estimated = listed.map(|entry| {
-            let (samples, lasting) = entry.read(records);
+    pub fn estimate(&self, samples: Vec<Vec<Sample>>) -> Vec<Estimated<'_>> {
+        let estimated = self.entries.iter().zip(samples).map(|(entry, mut samples)| {
+            let lasting = pool(&mut samples).unwrap_or_default();
             let cut_off = match entry.figure.estimator {
                 Estimator::Times => lasting.cut_off,
                 _ => samples.iter().filter(|sample| sample.is_censored).count() as u64,
             };
-            (&entry.figure, entry.figure.estimate(&samples), cut_off)
+            Estimated {
+                figure: &entry.figure,
+                is_listed: entry.is_listed,
+                estimate: entry.figure.estimate(&samples),
+                cut_off,
+                restricted_to: lasting.restricted_to,
+            }
         });
         estimated.collect()
     }

@@ -152,8 +152,10 @@ fn the_graph_is_that_of_live_robots_and_of_nobody_nothing_is_said() {
         "of the path's robots one has two and two have one"
     );
     let registry = Registry::of(&["a", "b"]);
-    let (seen, _) = registry.estimate("neighbours", std::slice::from_ref(&record));
-    assert_eq!(seen.value, Some(4.0 / 9.0), "nobody is no sample");
+    let seen = registry.figures().zip(registry.read(&record));
+    let mut seen = seen.filter(|(figure, _)| figure.key == "neighbours");
+    let value = seen.next().and_then(|(_, sample)| sample.value());
+    assert_eq!(value, Some(4.0 / 9.0), "nobody is no sample");
     // Whose least λ₂ is that of the two ends, who are in two pieces; one robot has none.
     assert_eq!(record.lambda2_min(), Some(0.0));
     assert_eq!(record.connected_share(), Some(2.0 / 3.0), "nobody is not in one piece");

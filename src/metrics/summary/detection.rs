@@ -1,9 +1,10 @@
 //! How well robots knew who had failed.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::detection::{Cause, DetectionRecord, Verdict};
-use crate::metrics::figures::mistakes;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS, Unit};
 
 use super::estimates::Figures;
@@ -66,23 +67,72 @@ pub struct Failures {
     pub unit: Unit,
 }
 
-impl Detection {
-    pub(super) fn of(figures: &Figures) -> Self {
-        let trials: Vec<&DetectionRecord> = figures.records.iter().map(|record| &record.detection).collect();
+/// What detectors did, counted trial by trial.
+#[derive(Clone, Debug)]
+pub(super) struct Beliefs {
+    by_cause: [(Cause, u64); Cause::ALL.len()],
+    by_verdict: [(Verdict, u64); Verdict::ALL.len()],
+    suspicions: u64,
+    monitored_s: f64,
+    /// Failures by the names of their outcomes.
+    failures: BTreeMap<&'static str, u64>,
+}
+
+impl Default for Beliefs {
+    fn default() -> Self {
         Self {
-            suspicions: Suspicions::of(&trials),
+            by_cause: Cause::ALL.map(|cause| (cause, 0)),
+            by_verdict: Verdict::ALL.map(|verdict| (verdict, 0)),
+            suspicions: 0,
+            monitored_s: 0.0,
+            failures: BTreeMap::new(),
+        }
+    }
+}
+
+impl Beliefs {
+    /// Counts those of a trial.
+    pub fn count(&mut self, trial: &DetectionRecord) {
+        for suspicion in &trial.suspicions {
+            one_more(&mut self.by_cause, suspicion.cause);
+            one_more(&mut self.by_verdict, suspicion.verdict());
+        }
+        self.suspicions += trial.suspicions.len() as u64;
+        self.monitored_s += trial.monitored_s;
+        for failure in &trial.failures {
+            *self.failures.entry(failure.outcome.name()).or_default() += 1;
+        }
+    }
+
+    fn of_verdict(&self, wanted: Verdict) -> u64 {
+        let found = self.by_verdict.iter().find(|(verdict, _)| *verdict == wanted);
+        found.map_or(0, |(_, number)| *number)
+    }
+}
+
+/// One more of `kind`.
+fn one_more<K: PartialEq>(numbers: &mut [(K, u64)], kind: K) {
+    if let Some((_, number)) = numbers.iter_mut().find(|(own, _)| *own == kind) {
+        *number += 1;
+    }
+}
+
+impl Detection {
+    pub(super) fn of(figures: &Figures, beliefs: &Beliefs) -> Self {
+        Self {
+            suspicions: Suspicions::of(beliefs),
             mistakes: Quantity {
-                value: trials.iter().map(|trial| mistakes(trial).count() as u64).sum(),
+                value: beliefs.of_verdict(Verdict::Mistake),
                 unit: SUSPICIONS.into(),
             },
-            failures: Failures::of(&trials),
+            failures: Failures::of(beliefs),
             detection_time_s: figures.lasted("detection.detection_time_s"),
             mistake_recurrence_s: figures.measured("detection.mistake_recurrence_s", SECONDS),
             mistake_duration_s: figures.lasted("detection.mistake_duration_s"),
             mistake_rate_hz: figures.measured("detection.mistake_rate_hz", "Hz"),
             query_accuracy: figures.measured("detection.query_accuracy", DIMENSIONLESS),
             monitored_s: Quantity {
-                value: trials.iter().map(|trial| trial.monitored_s).sum(),
+                value: beliefs.monitored_s,
                 unit: SECONDS.into(),
             },
         }
@@ -90,40 +140,24 @@ impl Detection {
 }
 
 impl Suspicions {
-    fn of(trials: &[&DetectionRecord]) -> Self {
-        let mut by_cause = Cause::ALL.map(|cause| (cause, 0));
-        let mut by_verdict = Verdict::ALL.map(|verdict| (verdict, 0));
-        for suspicion in trials.iter().flat_map(|trial| &trial.suspicions) {
-            count(&mut by_cause, suspicion.cause);
-            count(&mut by_verdict, suspicion.verdict());
-        }
+    fn of(beliefs: &Beliefs) -> Self {
         // Probes are no cause where nobody probes.
         let probed = |(cause, number): &(Cause, u64)| *cause != Cause::Unanswered || *number > 0;
         let named = |(cause, number): (Cause, u64)| (cause.name().to_owned(), number);
         Self {
-            value: trials.iter().map(|trial| trial.suspicions.len() as u64).sum(),
-            by_cause: Named(by_cause.into_iter().filter(probed).map(named).collect()),
-            by_verdict: Named::of(Verdict::ALL.map(Verdict::name), |verdict| by_verdict[verdict].1),
+            value: beliefs.suspicions,
+            by_cause: Named(beliefs.by_cause.into_iter().filter(probed).map(named).collect()),
+            by_verdict: Named::of(Verdict::ALL.map(Verdict::name), |verdict| beliefs.by_verdict[verdict].1),
             unit: SUSPICIONS.into(),
         }
     }
 }
 
-/// One more of `kind`.
-fn count<K: PartialEq>(numbers: &mut [(K, u64)], kind: K) {
-    if let Some((_, number)) = numbers.iter_mut().find(|(own, _)| *own == kind) {
-        *number += 1;
-    }
-}
-
 impl Failures {
-    fn of(trials: &[&DetectionRecord]) -> Self {
-        let count = |name: &str| {
-            let all = trials.iter().flat_map(|trial| &trial.failures);
-            all.filter(|failure| failure.outcome.name() == name).count() as u64
-        };
+    fn of(beliefs: &Beliefs) -> Self {
+        let count = |name: &str| beliefs.failures.get(name).copied().unwrap_or(0);
         Self {
-            observed: trials.iter().map(|trial| trial.failures.len() as u64).sum(),
+            observed: beliefs.failures.values().sum(),
             detected: count("detected"),
             recovered: count("recovered"),
             observer_failed: count("observer_failed"),

@@ -1,20 +1,21 @@
 //! The figures of the catalogue over trials, in the shapes of a summary.
 
 use super::quantity::{Lasted, Measured};
-use crate::metrics::figures::Registry;
+use crate::metrics::figures::Estimated;
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::SECONDS;
 use crate::statistics::{Estimate, Estimator};
 
 /// The figures of a protocol over the trials to be summarised: the ones that comparisons show.
-pub(super) struct Figures<'a> {
-    pub registry: &'a Registry,
-    pub records: &'a [TrialRecord],
-}
+pub(super) struct Figures<'a>(pub Vec<Estimated<'a>>);
 
 impl Figures<'_> {
+    fn find(&self, key: &str) -> Option<&Estimated<'_>> {
+        self.0.iter().find(|estimated| estimated.figure.key == key)
+    }
+
     pub fn estimate(&self, key: &str) -> Estimate {
-        self.registry.estimate(key, self.records).0
+        self.find(key).map(|found| found.estimate).unwrap_or_default()
     }
 
     pub fn measured(&self, key: &str, unit: &'static str) -> Measured {
@@ -25,11 +26,11 @@ impl Figures<'_> {
     }
 
     pub fn lasted(&self, key: &str) -> Lasted {
-        let (estimate, lasting) = self.registry.estimate(key, self.records);
+        let found = self.find(key);
         Lasted {
-            estimate,
-            cut_off: lasting.cut_off,
-            restricted_to: lasting.restricted_to,
+            estimate: self.estimate(key),
+            cut_off: found.map_or(0, |found| found.cut_off),
+            restricted_to: found.and_then(|found| found.restricted_to),
             unit: SECONDS.into(),
         }
     }

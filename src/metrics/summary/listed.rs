@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::estimates::Figures;
 use super::quantity::Named;
-use crate::metrics::figures::Registry;
-use crate::metrics::record::TrialRecord;
+use crate::metrics::figures::Estimated;
 use crate::metrics::unit::Unit;
 use crate::statistics::Estimate;
 
@@ -24,18 +24,17 @@ pub struct Listed {
 }
 
 impl Listed {
-    /// Every figure of the general list that a trial of `records` has.
-    pub(super) fn all(registry: &Registry, records: &[TrialRecord]) -> Named<Self> {
-        let listed = registry.listed(records).into_iter();
-        let known = listed.filter(|(_, estimate, _)| estimate.value.is_some());
-        let named = known.map(|(figure, estimate, cut_off)| {
+    /// Every figure of the general list that a trial has.
+    pub(super) fn all(figures: &Figures) -> Named<Self> {
+        let known = |found: &&Estimated| found.is_listed && found.estimate.value.is_some();
+        let named = figures.0.iter().filter(known).map(|found| {
             let listed = Self {
-                name: figure.name.clone(),
-                estimate,
-                cut_off: (cut_off > 0).then_some(cut_off),
-                unit: figure.unit.clone(),
+                name: found.figure.name.clone(),
+                estimate: found.estimate,
+                cut_off: (found.cut_off > 0).then_some(found.cut_off),
+                unit: found.figure.unit.clone(),
             };
-            (figure.key.clone(), listed)
+            (found.figure.key.clone(), listed)
         });
         Named(named.collect())
     }

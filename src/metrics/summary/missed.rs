@@ -55,32 +55,48 @@ struct Miss {
     at_end_m: Option<f64>,
 }
 
+/// A trial that failed, and for which targets.
+pub(super) struct FailedTrial {
+    lasted_s: f64,
+    robots_alive: f64,
+    misses: Vec<Miss>,
+}
+
+impl FailedTrial {
+    /// Why the trial of `record` failed; `None` if it did not, or nothing is known of its targets.
+    pub fn of(record: &TrialRecord) -> Option<Self> {
+        let sample = record.connectivity.first();
+        let failed = record.outcome == Outcome::Censored && sample.is_some_and(|sample| !sample.targets.is_empty());
+        failed.then(|| Self {
+            lasted_s: record.simulated.as_secs(),
+            robots_alive: (record.robots.len() - record.failed_at_end().len()) as f64,
+            misses: misses(record),
+        })
+    }
+}
+
 impl MissedSummary {
     /// Why those of `records` failed that did; `None` if none did, or nothing is known of their targets.
     #[must_use]
     pub fn of(records: &[TrialRecord]) -> Option<Self> {
-        let failed = |record: &&TrialRecord| {
-            let sample = record.connectivity.first();
-            record.outcome == Outcome::Censored && sample.is_some_and(|sample| !sample.targets.is_empty())
-        };
-        let failed: Vec<&TrialRecord> = records.iter().filter(failed).collect();
-        let alive = failed
-            .iter()
-            .map(|record| (record.robots.len() - record.failed_at_end().len()) as f64);
-        let misses: Vec<Miss> = failed.iter().flat_map(|record| misses(record)).collect();
+        Self::put_together(&records.iter().filter_map(FailedTrial::of).collect::<Vec<_>>())
+    }
+
+    pub(super) fn put_together(failed: &[FailedTrial]) -> Option<Self> {
+        let misses: Vec<&Miss> = failed.iter().flat_map(|trial| &trial.misses).collect();
         let count = misses.iter().map(|miss| miss.target + 1).max().unwrap_or(0);
         let targets = (0..count).filter_map(|target| MissedTarget::of(target, &misses));
         Some(Self {
             failed: failed.len() as u64,
-            lasted_s: middle(failed.iter().map(|record| record.simulated.as_secs()))?,
-            robots_alive: middle(alive)?,
+            lasted_s: middle(failed.iter().map(|trial| trial.lasted_s))?,
+            robots_alive: middle(failed.iter().map(|trial| trial.robots_alive))?,
             targets: targets.collect(),
         })
     }
 }
 
 impl MissedTarget {
-    fn of(target: usize, misses: &[Miss]) -> Option<Self> {
+    fn of(target: usize, misses: &[&Miss]) -> Option<Self> {
         let own = || misses.iter().filter(|miss| miss.target == target);
         Some(Self {
             target: target as u32,

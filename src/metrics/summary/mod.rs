@@ -11,6 +11,7 @@ mod listed;
 mod missed;
 mod quantity;
 mod spread;
+mod trials;
 
 pub use super::figures::{detection_times, mistake_durations};
 pub use super::unit::Unit;
@@ -22,13 +23,14 @@ pub use listed::Listed;
 pub use missed::{MissedSummary, MissedTarget};
 pub use quantity::{Lasted, Measured, Named, Quantity};
 pub use spread::{Duplicates, SpreadSummary, SpreadTime};
+pub use trials::Trials;
 
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::engine::Span;
 
-use super::figures::{Registry, completion};
+use super::figures::{Registry, Sample, completion};
 use super::latency::LatencyHistogram;
 use super::record::{Outcome, TrialRecord};
 use super::unit::{DIMENSIONLESS, SECONDS, STEPS};
@@ -140,11 +142,26 @@ impl Summary {
     /// As [`of`](Self::of), by the figures of `registry`, which has at least those that desim ships for these topics.
     #[must_use]
     pub fn by(registry: &Registry, scenario: &str, topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Self {
+        let mut trials = Trials::new(registry);
+        records.iter().for_each(|record| trials.add(record.clone()));
+        trials.summary(scenario, topics, roles)
+    }
+
+    fn put_together(trials: Trials, scenario: &str, topics: &[&str], roles: &[&str]) -> Self {
+        let Trials {
+            registry,
+            samples,
+            records,
+            failed,
+            beliefs,
+        } = trials;
+        let lambda2_min = LeastConnectivity::least(registry, &samples);
+        let figures = &Figures(registry.estimate(samples));
+        let records = &records[..];
         let completed = records
             .iter()
             .filter(|record| matches!(record.outcome, Outcome::Completed { .. }))
             .count() as u64;
-        let figures = &Figures { registry, records };
         Self {
             scenario: scenario.to_owned(),
             trials: records.len() as u64,
@@ -152,20 +169,24 @@ impl Summary {
             digest: digest(records),
             completion_ratio: figures.measured("completion_ratio", DIMENSIONLESS),
             steps_to_completion: StepsToCompletion::of(records),
-            missed: MissedSummary::of(records),
+            missed: MissedSummary::put_together(&failed),
             frames: Frames::of(topics, records),
             delivery_ratio: figures.measured("delivery_ratio", DIMENSIONLESS),
-            latency_s: Latency::of(figures),
+            latency_s: Latency::of(figures, records),
             bandwidth: Bandwidth::of(topics, roles, records),
             load_imbalance: LoadImbalance::of(figures),
-            lambda2_min: LeastConnectivity::of(figures),
+            lambda2_min: LeastConnectivity {
+                estimate: figures.estimate("lambda2_min"),
+                min: lambda2_min,
+                unit: DIMENSIONLESS.into(),
+            },
             connected_share: figures.measured("connected_share", DIMENSIONLESS),
             robots_used: figures.measured("robots_used", "robots"),
             faults: FaultSummary::of(roles, records),
             healing: HealingSummary::of(topics, roles, records),
-            spread: SpreadSummary::of(figures),
+            spread: SpreadSummary::of(figures, records),
             duplicates: Duplicates::of(topics, figures),
-            detection: Detection::of(figures),
+            detection: Detection::of(figures, &beliefs),
             steps: Quantity {
                 value: records.iter().map(|record| record.steps).sum(),
                 unit: STEPS.into(),
@@ -174,7 +195,7 @@ impl Summary {
                 value: records.iter().map(|record| record.simulated.as_secs()).sum(),
                 unit: SECONDS.into(),
             },
-            figures: Listed::all(registry, records),
+            figures: Listed::all(figures),
         }
     }
 }
@@ -196,9 +217,9 @@ impl StepsToCompletion {
 }
 
 impl Latency {
-    fn of(figures: &Figures) -> Self {
+    fn of(figures: &Figures, records: &[TrialRecord]) -> Self {
         let mut all = LatencyHistogram::default();
-        for record in figures.records {
+        for record in records {
             all.merge(&record.latency);
         }
         let quantile = |q| all.quantile(q).map(Span::as_secs);
@@ -213,13 +234,9 @@ impl Latency {
 }
 
 impl LeastConnectivity {
-    fn of(figures: &Figures) -> Self {
-        let minima: Vec<f64> = figures.records.iter().filter_map(TrialRecord::lambda2_min).collect();
-        Self {
-            estimate: figures.estimate("lambda2_min"),
-            min: minima.iter().copied().min_by(f64::total_cmp),
-            unit: DIMENSIONLESS.into(),
-        }
+    fn least(registry: &Registry, samples: &[Vec<Sample>]) -> Option<f64> {
+        let place = registry.figures().position(|figure| figure.key == "lambda2_min")?;
+        samples[place].iter().filter_map(Sample::value).min_by(f64::total_cmp)
     }
 }
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::metrics::figures::Pairs;
+use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS, Unit};
 use crate::statistics::{Estimate, Estimator, Observation, median_survival};
 
@@ -33,9 +34,9 @@ pub struct SpreadTime {
 }
 
 impl SpreadSummary {
-    /// How rumours spread; `None` if there were none.
-    pub(super) fn of(figures: &Figures) -> Option<Self> {
-        let trials: Vec<Pairs> = figures.records.iter().filter_map(Pairs::of).collect();
+    /// How rumours spread in `records`; `None` if there were none.
+    pub(super) fn of(figures: &Figures, records: &[TrialRecord]) -> Option<Self> {
+        let trials: Vec<Pairs> = records.iter().filter_map(Pairs::of).collect();
         (!trials.is_empty()).then(|| Self {
             informed_ratio: figures.measured("spread.informed_ratio", DIMENSIONLESS),
             time_to_half: SpreadTime::of(&trials, |count| count.div_ceil(2)),
