@@ -102,7 +102,7 @@ impl Pair {
     }
 }
 
-/// The pairs of a run.
+/// The pairs of a run. It is told of copies by value, and rarely: by reference every copy of every run would have to be in memory for it.
 #[derive(Debug)]
 pub(super) struct Pairs {
     /// By receiver: whom it was to hear, in order of their ids, and what came of it.
@@ -124,15 +124,16 @@ impl Pairs {
     }
 
     /// A copy arrived at `at`, and was read if it `is_read`: then in order of arrivals.
-    pub(super) fn delivered(&mut self, copy: &Copy, at: SimTime, is_read: bool) {
-        self.pair(copy).delivered += 1;
+    #[cold]
+    pub(super) fn delivered(&mut self, copy: Copy, at: SimTime, is_read: bool) {
+        self.pair(&copy).delivered += 1;
         if self.status != Some(copy.topic) {
             return;
         }
         if is_read {
-            self.refresh(copy, at);
+            self.refresh(&copy, at);
         } else {
-            self.unread.push((at, *copy));
+            self.unread.push((at, copy));
         }
     }
 
@@ -145,13 +146,15 @@ impl Pairs {
     }
 
     /// A copy was lost.
-    pub(super) fn lost(&mut self, copy: &Copy) {
-        self.pair(copy).lost += 1;
+    #[cold]
+    pub(super) fn lost(&mut self, copy: Copy) {
+        self.pair(&copy).lost += 1;
     }
 
     /// A copy is still under way at the end.
-    pub(super) fn in_flight(&mut self, copy: &Copy) {
-        self.pair(copy).in_flight += 1;
+    #[cold]
+    pub(super) fn in_flight(&mut self, copy: Copy) {
+        self.pair(&copy).in_flight += 1;
     }
 
     fn pair(&mut self, copy: &Copy) -> &mut Pair {

@@ -39,7 +39,7 @@ impl Observer for Recorder {
     fn lost(&mut self, copy: &Copy, cause: LossCause, _: SimTime) {
         self.lost(copy.receiver, copy.topic, cause, copy.size);
         if let Some(pairs) = &mut self.pairs {
-            pairs.lost(copy);
+            pairs.lost(*copy);
         }
         if self.status == Some(copy.topic) {
             self.status_lost(copy.receiver, copy.sender, copy.sequence, cause);
@@ -51,14 +51,14 @@ impl Observer for Recorder {
     fn delivered(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {
         self.delivered(copy.receiver, copy.topic, copy.size, copy.latency(at));
         if let Some(pairs) = &mut self.pairs {
-            pairs.delivered(copy, at, read.is_some());
+            pairs.delivered(*copy, at, read.is_some());
         }
     }
 
     fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
         self.in_flight(copy.topic, at.map(|at| copy.latency(at)));
         if let Some(pairs) = &mut self.pairs {
-            pairs.in_flight(copy);
+            pairs.in_flight(*copy);
         }
     }
 
