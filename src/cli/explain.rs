@@ -55,6 +55,12 @@ pub struct ExplainArguments {
 pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
     let manifest = results(&arguments.dir)?;
     let scenario = scenario(&manifest, &arguments.dir)?;
+    if !scenario.protocol.has_statuses() {
+        return refuse(format!(
+            "robots that run {} send no statuses: nobody watches over them, and nobody is suspected",
+            scenario.protocol.name()
+        ));
+    }
     let digest = recorded_digest(&manifest, arguments)?;
     if arguments.robot >= scenario.swarm.robots {
         let robots = scenario.swarm.robots;

@@ -13,7 +13,7 @@ use crate::spool::Scratch;
 /// Runs trial number `trial` of `scenario`, until `stop` is cancelled.
 ///
 /// # Errors
-/// If the robots find no room, or the run stops before its end.
+/// If the robots find no room, or the run stops before its end, or robots counted more of a part than of the whole.
 pub fn run_trial(
     scenario: &Scenario,
     trial: u32,
@@ -80,7 +80,12 @@ fn run(
         driver,
         stop,
     };
-    Ok(scenario.protocol.run(&swarm, start)?)
+    let record = scenario.protocol.run(&swarm, start)?;
+    let mut figures = scenario.protocol.figures().into_iter();
+    match figures.find_map(|figure| figure.fault(&record)) {
+        Some(fault) => Err(TrialError::Counted(fault)),
+        None => Ok(record),
+    }
 }
 
 fn setup(scenario: &Scenario, trial: u32) -> Setup {

@@ -24,6 +24,8 @@ pub trait AnyKind: Any + Debug + Send + Sync + erased_serde::Serialize {
     fn all_topics(&self) -> &'static [&'static str];
     /// Whether robots send statuses.
     fn has_statuses(&self) -> bool;
+    /// Whether robots' messages can carry what a failure detector says.
+    fn has_probes(&self) -> bool;
     /// Whether robots ask what is near.
     fn senses(&self) -> bool;
     fn topics(&self, detector: &DetectorConfig) -> &'static [&'static str];
@@ -75,6 +77,10 @@ impl<K: Kind> AnyKind for K {
 
     fn has_statuses(&self) -> bool {
         K::Robot::STATUS.is_some()
+    }
+
+    fn has_probes(&self) -> bool {
+        K::Robot::PROBE.is_some()
     }
 
     fn senses(&self) -> bool {

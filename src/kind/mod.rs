@@ -5,18 +5,14 @@
 //! beside those that desim ships; every command then knows it.
 //!
 //! ```
-//! use std::process::ExitCode;
-//! use std::rc::Rc;
-//!
 //! use desim::engine::SimTime;
-//! use desim::kind::{Kind, Swarm};
-//! use desim::protocol::{Input, Output, Protocol, Wake};
-//! # use bytes::BytesMut;
-//! # use desim::protocol::CodecError;
-//! # use tokio_util::codec::{Decoder, Encoder};
+//! use desim::kind::{Kind, Sections, Swarm};
+//! use desim::protocol::{Input, Output, Protocol, Serialised, Wake};
+//! use schemars::JsonSchema;
+//! use serde::{Deserialize, Serialize};
 //!
-//! /// Robots that all say one byte at each of their control steps.
-//! #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
+//! /// Robots that all say one number at each of their control steps.
+//! #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 //! #[serde(deny_unknown_fields, default)]
 //! struct Beep {
 //!     /// What they say.
@@ -31,32 +27,16 @@
 //!
 //! struct Robot(u8);
 //!
-//! # #[derive(Default)]
-//! # struct Byte;
-//! # impl Encoder<u8> for Byte {
-//! #     type Error = CodecError;
-//! #     fn encode(&mut self, tone: u8, bytes: &mut BytesMut) -> Result<(), CodecError> {
-//! #         bytes.extend_from_slice(&[tone]);
-//! #         Ok(())
-//! #     }
-//! # }
-//! # impl Decoder for Byte {
-//! #     type Item = u8;
-//! #     type Error = CodecError;
-//! #     fn decode(&mut self, bytes: &mut BytesMut) -> Result<Option<u8>, CodecError> {
-//! #         Ok((!bytes.is_empty()).then(|| bytes.split_to(1)[0]))
-//! #     }
-//! # }
 //! impl Protocol for Robot {
 //!     type Message = u8;
 //!     type Heard = u8;
-//!     type Codec = Byte; // one byte, as it is
+//!     type Codec = Serialised<u8>;
 //!     const TOPICS: &'static [&'static str] = &["beep"];
 //!     const ROLES: &'static [&'static str] = &["robot"];
 //!
 //!     fn step(&mut self, _: SimTime, input: &mut Input<u8>, output: &mut Output<u8>) {
 //!         if input.wake == Wake::ControlStep {
-//!             output.broadcasts.push(self.0);
+//!             output.broadcast(self.0);
 //!         }
 //!     }
 //! }
@@ -65,8 +45,14 @@
 //!     const NAME: &'static str = "Beep";
 //!     type Robot = Robot;
 //!
-//!     fn robots(&self, swarm: &Swarm) -> Vec<Robot> {
+//!     fn robots(&self, swarm: &Swarm<'_>) -> Vec<Robot> {
 //!         swarm.each(|_| Robot(self.tone))
+//!     }
+//!
+//!     // What no type says: a path from the config on, and what is wrong there.
+//!     fn problems(&self, _: &Sections<'_>) -> Vec<(String, String)> {
+//!         let silent = self.tone == 0;
+//!         silent.then(|| ("tone".to_owned(), "0 is no tone".to_owned())).into_iter().collect()
 //!     }
 //! }
 //!
@@ -75,9 +61,10 @@
 //! let scenario = desim::scenario::parse("beep.ron", text, &[])?;
 //! assert_eq!(scenario.protocol.name(), "Beep");
 //!
-//! // A field that the kind does not have is found at its place, with the nearest that it has.
-//! let faults = desim::scenario::parse("beep.ron", &text.replace("tone", "tune"), &[]).unwrap_err();
-//! assert!(faults.to_string().contains("did you mean `tone`?"));
+//! // A field that the kind does not have is found at its place, with the nearest that it has; and so is what it refuses.
+//! let faults = |text: &str| desim::scenario::parse("beep.ron", text, &[]).unwrap_err().to_string();
+//! assert!(faults(&text.replace("tone", "tune")).contains("did you mean `tone`?"));
+//! assert!(faults(&text.replace("tone: 7", "tone: 0")).contains("`protocol.tone`: 0 is no tone"));
 //! # Ok::<(), desim::scenario::Report>(())
 //! ```
 
@@ -109,7 +96,8 @@ use crate::protocol::detector::DetectorConfig;
 use crate::protocol::{CompletionConfig, Protocol};
 use crate::simulation::RunError;
 
-/// A kind of protocol: what a scenario names, and what is said of it field by field.
+/// A kind of protocol: what a scenario names, and what is said of it field by field. [The module](self) has an example, and so has
+/// [the crate's page](crate#name-it-in-a-scenario).
 ///
 /// The config's doc comments are what editors and messages show, from its JSON Schema. It should be a struct with
 /// `deny_unknown_fields`, so that a misspelt field is refused; a unit struct is named without brackets.

@@ -5,9 +5,9 @@ use crate::faults::FaultConfig;
 use crate::geometry::{Pose, Vec2};
 use crate::metrics::MetricsConfig;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig};
-use crate::protocol::control::{ControlConfig, Phases};
-use crate::protocol::detector::{Circumstances, DetectorConfig};
-use crate::protocol::gossip::GossipConfig;
+use crate::protocol::control::{ControlConfig, Phases, Rhythm};
+use crate::protocol::detector::{Circumstances, Detector, DetectorConfig};
+use crate::protocol::gossip::{GossipConfig, OwnTurns, Turns};
 use crate::protocol::wander::{Ground, WanderConfig};
 use crate::radio::RadioConfig;
 
@@ -78,6 +78,24 @@ impl Swarm<'_> {
     #[must_use]
     pub fn phases(&self) -> Phases {
         Phases::new(self.sections.control.phase, self.streams)
+    }
+
+    /// The failure detector that the scenario sets, for robot `id`. The robots' kind heeds [`Shared::Detector`] and
+    /// [`Shared::Status`]; [its module](crate::protocol::detector) shows a whole robot.
+    ///
+    /// [`Shared::Detector`]: super::Shared::Detector
+    /// [`Shared::Status`]: super::Shared::Status
+    #[must_use]
+    pub fn detector(&self, id: ActorId) -> Detector {
+        let sections = &self.sections;
+        Detector::new(sections.detector, sections.circumstances(), self.phases(), id)
+    }
+
+    /// At which of its control steps robot `id` says its status, by `gossip.status`.
+    #[must_use]
+    pub fn status_turns(&self, id: ActorId) -> OwnTurns {
+        let timing = self.sections.gossip.status.timing(self.sections.period());
+        Turns::new(timing, Rhythm::Status, self.phases(), self.streams).of(id)
     }
 
     /// Where robots go that wander as the scenario says.

@@ -19,7 +19,8 @@ pub enum Shared {
     Piggyback,
     /// `wander`: how robots move.
     Wander,
-    /// `detector`: when a robot believes that a neighbour is down.
+    /// `detector`: when a robot believes that a neighbour is down. Heeded by robots that say statuses
+    /// ([`Protocol::STATUS`](crate::protocol::Protocol::STATUS)) as [`Status`](Self::Status) has it, which detectors count on.
     Detector,
 }
 

@@ -46,4 +46,7 @@ pub enum TrialError {
     /// The run stopped before its end.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// Robots counted what cannot be ([`NotedFigure::fault`](crate::metrics::NotedFigure::fault)).
+    #[error("{0}")]
+    Counted(String),
 }

@@ -8,14 +8,31 @@ use crate::statistics::{Estimator, Part};
 /// What keys of such figures begin with, so that they are told from others.
 pub const PREFIX: &str = "noted.";
 
-/// A figure of what robots [count](crate::protocol::Output::count) and [measure](crate::protocol::Output::measure).
+/// A figure of what robots [count](crate::protocol::Output::count) and [measure](crate::protocol::Output::measure): a kind says which it has
+/// ([`Kind::figures`](crate::kind::Kind::figures)). It stands in the summary, in reports and on pages, with an interval over trials, and
+/// a study names it as `noted.<key>`.
+///
+/// ```
+/// use desim::metrics::NotedFigure;
+///
+/// let figures = [
+///     // of `output.measure("delay", ...)`, in seconds
+///     NotedFigure::mean("delay_s", "delay of an answer", "s", "delay"),
+///     NotedFigure::quantile("delay_s.p95", "delay of an answer, 95 %", "s", "delay", 0.95),
+///     // of `output.count("answered", 1)` and `output.count("asked", 1)`
+///     NotedFigure::share("success", "questions answered", "answered", "asked").higher(),
+///     NotedFigure::per_robot("questions", "questions of a robot", "asked"),
+///     NotedFigure::per_second("questions_hz", "questions of the swarm", "asked"),
+/// ];
+/// assert_eq!(figures[2].figure().key, "noted.success");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NotedFigure {
     /// Its key, of small letters, digits, `_` and dots, its unit last: `delay_s.mean`.
     pub key: &'static str,
     /// What reports call it.
     pub name: &'static str,
-    /// Its unit, `1` for none.
+    /// Its unit, as reports show it, such as `s` or `m`; `1` for none.
     pub unit: &'static str,
     /// Which way is better.
     pub better: Better,
@@ -51,19 +68,20 @@ impl NotedFigure {
         Self::of(key, name, unit, Reading::Quantile(measured, q))
     }
 
-    /// What robots counted as `some` by what they counted as `all`, which must be no less: a share.
+    /// What robots counted as `some` by what they counted as `all`, over all robots and trials: a share, from 0 to 1. A trial in which
+    /// they counted more of `some` than of `all` ends with an error ([`fault`](Self::fault)).
     #[must_use]
     pub const fn share(key: &'static str, name: &'static str, some: &'static str, all: &'static str) -> Self {
         Self::of(key, name, "1", Reading::Share(some, all))
     }
 
-    /// What robots counted as `counted`, a robot and trial.
+    /// What robots counted as `counted`, a robot and trial; its mean over trials.
     #[must_use]
     pub const fn per_robot(key: &'static str, name: &'static str, counted: &'static str) -> Self {
         Self::of(key, name, "1", Reading::PerRobot(counted))
     }
 
-    /// What the whole swarm counted as `counted`, a second.
+    /// What the whole swarm counted as `counted`, a simulated second, in Hz.
     #[must_use]
     pub const fn per_second(key: &'static str, name: &'static str, counted: &'static str) -> Self {
         Self::of(key, name, "Hz", Reading::PerSecond(counted))
@@ -108,10 +126,23 @@ impl NotedFigure {
         }
     }
 
-    /// What a trial tells of it. Where nobody noted anything of the kind, it tells nothing.
-    ///
-    /// # Panics
-    /// If more was counted as a part of something than of the whole: the protocol's own counting is wrong.
+    /// What is wrong with what robots counted for it in `record`, if something is: more of a part than of the whole. A run that a
+    /// scenario asked for ends with an error then.
+    #[must_use]
+    pub fn fault(&self, record: &TrialRecord) -> Option<String> {
+        let Reading::Share(some, all) = self.reading else {
+            return None;
+        };
+        let [part, whole] = [some, all].map(|name| total(record, name));
+        (part > whole).then(|| {
+            format!(
+                "robots counted {part} `{some}` and {whole} `{all}`, of which the figure `{}` is to be the share: the protocol counts wrongly",
+                self.key
+            )
+        })
+    }
+
+    /// What a trial tells of it. Where nobody noted anything of the kind, or there is a [fault](Self::fault) in it, it tells nothing.
     #[must_use]
     pub fn read(&self, record: &TrialRecord) -> Sample {
         match self.reading {
@@ -124,14 +155,8 @@ impl NotedFigure {
                 Sample::plain(all.map(|all| all.quantile(q)))
             }
             Reading::Share(some, all) => {
-                let (some_counted, counted) = (total(record, some), total(record, all));
-                assert!(
-                    some_counted <= counted,
-                    "the figure `{}` has {some_counted} `{some}` of {counted} `{all}`, in trial {}",
-                    self.key,
-                    record.trial
-                );
-                Sample::ratio([some_counted as f64, counted as f64])
+                let parts = [some, all].map(|name| total(record, name) as f64);
+                Sample::ratio(if self.fault(record).is_none() { parts } else { [0.0; 2] })
             }
             Reading::PerRobot(name) => {
                 let robots = record.robots.len() as f64;

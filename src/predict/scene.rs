@@ -1,7 +1,7 @@
 //! What several predictions need to know of a scenario.
 
 use crate::engine::Span;
-use crate::kind::Expected;
+use crate::kind::{Expected, Shared};
 use crate::motion::Spacing;
 use crate::protocol::gossip::{SendConfig, Timing};
 use crate::radio::LossConfig;
@@ -44,8 +44,8 @@ impl<'a> Scene<'a> {
         if !protocol.has_statuses() {
             return Some("the protocol sends no statuses");
         }
-        if protocol.status_bytes().is_none() {
-            return Some("the protocol does not say how long its statuses are");
+        if !protocol.heeds(&self.scenario.sections()).contains(&Shared::Status) {
+            return Some("the protocol does not send its statuses as `gossip.status` says");
         }
         match self.scenario.gossip.status.send {
             SendConfig::OnChange { .. } => {
@@ -53,6 +53,13 @@ impl<'a> Scene<'a> {
             }
             SendConfig::Always => None,
         }
+    }
+
+    /// Why nothing can be said of the bytes of statuses, if nothing can.
+    pub fn unmeasured(&self) -> Option<&'static str> {
+        let unsaid = self.scenario.protocol.status_bytes().is_none();
+        let why = unsaid.then_some("the protocol does not say how long its statuses are");
+        self.unsteady().or(why)
     }
 
     /// Whether robots send nothing but statuses.

@@ -12,7 +12,7 @@ const LOAD: &str = "channel load";
 pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
     loss(scene, preflight);
     latency(scene, preflight);
-    match scene.unsteady() {
+    match scene.unmeasured() {
         None => {
             sent(scene, preflight);
             received(scene, preflight);

@@ -27,7 +27,19 @@ pub enum Wake {
     Reception,
 }
 
-/// What a robot is told when it wakes.
+/// What a robot is told when it wakes. `M` is [`Protocol::Heard`](super::Protocol::Heard).
+///
+/// ```
+/// use desim::protocol::{Input, Wake};
+/// use rand::RngExt as _; // what `random` can draw
+///
+/// /// Whether a robot is to speak now, and to how many that are within a metre.
+/// fn speaks(input: &mut Input<u32>) -> Option<usize> {
+///     let near = input.inbox.iter().filter(|reception| reception.displacement().norm() < 1.0);
+///     let near = near.count();
+///     (input.wake == Wake::ControlStep && input.random.random_bool(0.1)).then_some(near)
+/// }
+/// ```
 #[derive(Debug)]
 pub struct Input<M> {
     /// Its own number.
@@ -36,12 +48,13 @@ pub struct Input<M> {
     pub wake: Wake,
     /// The frames that arrived since it last woke, in order of arrival.
     pub inbox: Vec<Reception<M>>,
-    /// Where it is, as it senses it.
+    /// Where it is and which way it faces: metres from the arena's centre, radians.
     pub pose: Pose,
     /// Near bodies at a control step (robots, walls, obstacles, within the proximity range): the vector from this
     /// robot's edge to the nearest point of each, in the arena's axes, metres.
     pub proximity: Vec<Vec2>,
-    /// Randomness for this wake alone.
+    /// Randomness for this wake alone, whatever was drawn before: the draws of a robot's n-th wake are the same in each run of a trial. The
+    /// traits of the crate `rand` draw from it.
     pub random: Philox,
 }
 

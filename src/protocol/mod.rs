@@ -29,20 +29,26 @@ pub use input::{Address, Frame, Input, Reception, Start, Wake};
 pub use names::{MessageSize, Role, TimerId, Topic};
 pub use output::{Directed, Evidence, Note, Output};
 
-/// A protocol as one robot runs it.
+/// A protocol as one robot runs it: [the crate's page](crate#write-it) writes, tests and runs a whole one.
+///
+/// All robots of a run are values of one type; what makes them differ is in the values. A step follows from the robot, the time and
+/// its input alone: one that looks at a clock, a random number of its own or the order of a `HashMap` makes two runs of a seed differ.
 pub trait Protocol: Sized + 'static {
     /// What robots say to each other.
     type Message: Debug + 'static;
     /// A message as its receivers get it, a clone each: the message itself if it is a word or two, else an `Rc` of it.
     type Heard: From<Self::Message> + Borrow<Self::Message> + Clone + Debug + 'static;
-    /// Makes payload bytes of messages and messages of payload bytes.
+    /// Makes payload bytes of messages and messages of payload bytes: [`Serialised`], or one by hand, of which there is an example there.
+    /// One for all robots, so it may keep nothing. A message that does not come back from its bytes whole, as one on the same topic, or
+    /// has more than 65,535 of them, ends the run with a [`RunError`](crate::simulation::RunError).
     type Codec: Encoder<Self::Message, Error = CodecError> + Decoder<Item = Self::Message, Error = CodecError> + Default;
-    /// Names of the topics, by which traffic is accounted; [`topics`](Self::topics) are those in use.
+    /// Names of the topics, by which traffic is accounted, at least one; [`topics`](Self::topics) are those in use.
     const TOPICS: &'static [&'static str];
-    /// Names of the roles, by which traffic is accounted. A robot starts in the first.
+    /// Names of the roles, by which traffic is accounted, at least one. A robot starts in the first, and [notes](Note::Role) when it
+    /// takes another.
     const ROLES: &'static [&'static str];
-    /// The topic that the robots' failure detector listens to, if they run one: its frames are followed one by one, so that
-    /// a suspicion can be traced to what became of them.
+    /// The topic that the robots' failure detector listens to, if they run [one](detector): its frames are followed one by one, so that
+    /// a suspicion can be traced to what became of them, by `desim explain`.
     const STATUS: Option<Topic> = None;
     /// The topic of what the robots' failure detector says, the last of them, if robots run one: it is in use where the
     /// scenario's detector sends messages.
@@ -62,7 +68,7 @@ pub trait Protocol: Sized + 'static {
         }
     }
 
-    /// The topic that `message` belongs to: the first one, if the protocol does not say otherwise.
+    /// The topic that `message` belongs to, one of [`TOPICS`](Self::TOPICS): the first one, if the protocol does not say otherwise.
     fn topic(message: &Self::Message) -> Topic {
         let _ = message;
         Topic(0)
@@ -76,7 +82,8 @@ pub trait Protocol: Sized + 'static {
     /// Asks for the memory that the next step will read beside `self` ([`Process::prefetch`]).
     fn prefetch(&self) {}
 
-    /// Takes one step: reads `input`, fills `output`.
+    /// Takes one step: reads `input`, fills `output`, which is empty. Called at each wake, of which [`Input::wake`] says why; the
+    /// robot is not asked again before its next one.
     fn step(&mut self, now: SimTime, input: &mut Input<Self::Heard>, output: &mut Output<Self::Message>);
 }
 

@@ -1,14 +1,15 @@
 //! Numbers of topics, roles and timers, and how long messages are: the words that all of a protocol's world share.
 
-/// Index of a topic in [`Protocol::TOPICS`](super::Protocol::TOPICS).
+/// Index of a topic in [`Protocol::TOPICS`](super::Protocol::TOPICS). One beyond them is a mistake of the protocol: the run panics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Topic(pub u8);
 
-/// Index of a role in [`Protocol::ROLES`](super::Protocol::ROLES).
+/// Index of a role in [`Protocol::ROLES`](super::Protocol::ROLES). One beyond them is a mistake of the protocol: the run panics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Role(pub u8);
 
-/// A protocol's own name for one of its timers.
+/// A protocol's own name for one of its timers, of which a robot may have 256. Robots that run a failure detector leave it
+/// [its own](super::detector::TIMER).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimerId(pub u8);
 

@@ -5,14 +5,31 @@ use crate::geometry::Vec2;
 
 use super::names::{MessageSize, Role, TimerId, Topic};
 
-/// What a robot answers when it has woken.
+/// What a robot answers when it has woken. `M` is [`Protocol::Message`](super::Protocol::Message).
+///
+/// ```
+/// use desim::engine::{ActorId, SimTime, Span};
+/// use desim::protocol::{Output, TimerId};
+///
+/// const AGAIN: TimerId = TimerId(0);
+///
+/// fn answer(now: SimTime, output: &mut Output<&'static str>) {
+///     output.broadcast("hello"); // to all in range
+///     output.send(ActorId(3), "you too"); // to robot 3
+///     output.set_timer(AGAIN, now + Span::from_secs(2.5)); // wakes with `Wake::Timer(AGAIN)`
+///     output.count("greetings", 2); // read by a `NotedFigure`
+///     output.measure("battery_V", 11.7);
+/// }
+/// # answer(SimTime::ZERO, &mut Output::default());
+/// ```
 #[derive(Debug)]
 pub struct Output<M> {
     /// Messages to broadcast, in order.
     pub broadcasts: Vec<M>,
     /// Messages to one robot each, in order; each knows its place among the broadcasts.
     pub sends: Vec<Directed<M>>,
-    /// The velocity it wants from now on, in the arena's axes, m/s; `None` keeps the last one.
+    /// The velocity it wants from now on, in the arena's axes, m/s; `None` keeps the last one. The robot goes as fast as `motion.max_speed`
+    /// lets it; one that is not finite asks to stand.
     pub velocity: Option<Vec2>,
     /// Timers to set (`Some`, replacing the pending one of that id) or to cancel (`None`).
     pub timers: Vec<(TimerId, Option<SimTime>)>,
@@ -49,7 +66,8 @@ impl<M> Output<M> {
         });
     }
 
-    /// Sets the timer `id`, or moves it: the robot wakes at `at`, at once if that is past.
+    /// Sets the timer `id`, or moves it: the robot wakes once at `at`, at once if that is past, with
+    /// [`Wake::Timer`](super::Wake::Timer).
     pub fn set_timer(&mut self, id: TimerId, at: SimTime) {
         self.timers.push((id, Some(at)));
     }
@@ -59,13 +77,13 @@ impl<M> Output<M> {
         self.timers.push((id, None));
     }
 
-    /// Adds `n` to what this robot counts under `name`, for the metrics.
+    /// Adds `n` to what this robot counts under `name`, for figures ([`NotedFigure`](crate::metrics::NotedFigure)) and the table of notes.
     pub fn count(&mut self, name: &'static str, n: u64) {
         self.notes.push(Note::Count { name, n });
     }
 
-    /// Notes a `value` of what this robot measures as `name`, for the metrics: in whatever unit, but finite, or the run ends
-    /// with an error.
+    /// Notes a `value` of what this robot measures as `name`, for figures ([`NotedFigure`](crate::metrics::NotedFigure)) and the table of
+    /// notes: in whatever unit, but finite, or the run ends with an error.
     pub fn measure(&mut self, name: &'static str, value: f64) {
         self.notes.push(Note::Value { name, value });
     }

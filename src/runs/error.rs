@@ -76,7 +76,7 @@ impl RunsError {
             Self::Folder(FolderError::Io { .. })
             | Self::Parts(PartsError::Io { .. } | PartsError::Damaged { .. })
             | Self::Trial {
-                source: TrialError::Run(_),
+                source: TrialError::Run(_) | TrialError::Counted(_),
                 ..
             } => Cause::Other,
             Self::Taken { .. }

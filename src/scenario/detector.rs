@@ -12,7 +12,24 @@ pub fn problems(scenario: &Scenario) -> Vec<Problem> {
         DetectorConfig::Swim(swim) => answers(scenario, swim),
         DetectorConfig::None | DetectorConfig::Timeout(_) | DetectorConfig::PhiAccrual(_) => None,
     };
-    pauses(scenario).into_iter().chain(own).collect()
+    pauses(scenario)
+        .into_iter()
+        .chain(own)
+        .chain(unspoken(scenario))
+        .collect()
+}
+
+/// What a detector says must fit into the robots' messages.
+fn unspoken(scenario: &Scenario) -> Option<Problem> {
+    let speaks = scenario.runs_detector() && scenario.detector.sends();
+    (speaks && !scenario.protocol.has_probes()).then(|| {
+        let message = format!(
+            "this detector sends messages, and those of the protocol {} cannot carry what it says",
+            scenario.protocol.name()
+        );
+        let help = "use one that listens: `Timeout`, `NfdS` or `PhiAccrual`";
+        Problem::new("detector", message, help).with(&["protocol"])
+    })
 }
 
 /// The pause from one status to the next must not be suspicious.

@@ -47,12 +47,13 @@ impl FromStr for DriverKind {
 /// The observers of every run: what makes its record.
 type Books = (Recorder, Digest);
 
-/// The world that robots are put into.
+/// The world that robots are put into, for a run without a scenario: [the crate's page](crate#watch-it) has an example. Lengths are in metres
+/// from the arena's centre. A [`Scenario`](crate::scenario::Scenario) makes one for each trial.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
     /// Seed of every random stream.
     pub seed: u64,
-    /// Number of the trial: other trials of the same seed draw other numbers.
+    /// Number of the trial: other trials of the same seed draw other numbers. Settings that differ in other fields have common ones.
     pub trial: u32,
     /// When the run ends at the latest.
     pub time_limit: Span,
@@ -72,7 +73,8 @@ pub struct Setup {
     pub faults: Vec<FaultConfig>,
     /// What is measured.
     pub metrics: MetricsConfig,
-    /// The failure detector that robots run: so far back are suspicions traced to what became of the statuses.
+    /// The failure detector that robots run, if they run one: so far back are suspicions traced to what became of the statuses. It is told
+    /// here and given to the robots by who makes them.
     pub detector: DetectorConfig,
     /// The longest pause that a robot makes between two statuses; zero if it sends none.
     pub status_interval: Span,
@@ -104,13 +106,14 @@ impl Setup {
         Streams::new(self.seed, self.trial)
     }
 
-    /// Puts `robots` at `poses` and runs them to the end, or until `stop` is cancelled.
+    /// Puts `robots` at `poses`, in order of their numbers, and runs them to the end, or until `stop` is cancelled.
     ///
     /// # Errors
     /// If a message cannot cross the air, a robot measures what is no number, or the run is interrupted.
     ///
     /// # Panics
-    /// If there are not as many poses as robots, or a config has problems: a scenario is checked before it is run.
+    /// If there are not as many poses as robots, or a config has problems: a scenario is checked before it is run. If a robot names a topic or a
+    /// role that its protocol does not have.
     pub fn run<P: Protocol>(
         &self,
         poses: Vec<Pose>,

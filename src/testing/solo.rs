@@ -13,7 +13,14 @@ use crate::protocol::{Address, Frame, Input, Note, Output, Protocol, Reception, 
 
 const ROBOT: Purpose = Purpose::new("testing.robot");
 
-/// One robot and what reaches it. A test says when it wakes, what it has heard by then, and what is near.
+/// One robot and what reaches it. A test says when it wakes, what it has heard by then, and what is near. What it answers comes back as
+/// an [`Answer`]: messages, velocity, notes; its timers are kept, and run out as time [advances](Self::advance).
+///
+/// [The module](super) has an example, and so has [the crate's page](crate#test-it).
+///
+/// # Panics
+/// Every method that has a message cross the codec, if it does not come back whole and on its topic, and every one that wakes the robot,
+/// if that sends to itself or to a robot that does not exist. So does one that names a robot beyond the swarm.
 #[derive(Debug)]
 pub struct Solo<P: Protocol> {
     robot: P,
@@ -87,7 +94,7 @@ impl<M: Clone> Answer<M> {
 }
 
 impl<P: Protocol> Solo<P> {
-    /// Robot `me` of a swarm of `robots`, which is told so, at time 0.
+    /// Robot `me` of a swarm of `robots`, numbered from 0, which is told so ([`Protocol::start`]), at time 0.
     #[must_use]
     pub fn new(me: ActorId, robots: usize, mut robot: P) -> Self {
         robot.start(Start { me, robots });
@@ -125,7 +132,7 @@ impl<P: Protocol> Solo<P> {
         self.timers.get(&id.0).copied()
     }
 
-    /// A broadcast of `from` arrives now. It is read when the robot next wakes.
+    /// A broadcast of `from` arrives now, from where the robot is. It is read when the robot next wakes.
     pub fn hears(&mut self, from: ActorId, message: P::Message) {
         let heard = self.through_codec(message).0;
         self.receive(from, Address::Everyone, heard, Vec2::zeros());

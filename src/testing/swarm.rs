@@ -34,6 +34,9 @@ struct Copy<M> {
 
 /// A swarm whose robots hear each other as a test says. All take their control steps together.
 ///
+/// [The module](super) has an example, and so has [the crate's page](crate#test-it). There are no bodies: velocities and what is near are
+/// left out, and robots stay where they are [placed](Self::place). Methods that are given the number of a robot that does not exist panic.
+///
 /// At one instant what arrives is in the inboxes first, then timers run out, then control steps are taken; all robots that wake
 /// at one instant answer before any is heard.
 pub struct Swarm<P: Protocol> {

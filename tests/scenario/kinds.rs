@@ -12,6 +12,7 @@ use desim::engine::SimTime;
 use desim::experiment::run_trial;
 use desim::kind::{Kind, Sections, Swarm};
 use desim::kinds;
+use desim::metrics::NotedFigure;
 use desim::protocol::{CodecError, Input, Output, Protocol, Wake};
 use desim::quantity::Positive;
 use desim::scenario::{Override, Scenario, json_schema, parse, to_ron};
@@ -241,6 +242,74 @@ fn a_name_is_given_once() {
     kinds::add::<Beep>();
     kinds::add::<Beep>();
     kinds::add::<Impostor>();
+}
+
+/// Robots that count an answer at each control step, and a question at every second one if the config says so.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Answers {
+    /// Whether they count more answers than questions.
+    wrongly: bool,
+}
+
+struct Counter {
+    wrongly: bool,
+    steps: u32,
+}
+
+impl Protocol for Counter {
+    type Message = u8;
+    type Heard = u8;
+    type Codec = Byte;
+    const TOPICS: &'static [&'static str] = &["nothing"];
+    const ROLES: &'static [&'static str] = &["robot"];
+
+    fn step(&mut self, _: SimTime, _: &mut Input<u8>, output: &mut Output<u8>) {
+        output.count("answers", 1);
+        output.count("questions", u64::from(!self.wrongly || self.steps.is_multiple_of(2)));
+        self.steps += 1;
+    }
+}
+
+impl Kind for Answers {
+    const NAME: &'static str = "Answers";
+    type Robot = Counter;
+
+    fn robots(&self, swarm: &Swarm<'_>) -> Vec<Counter> {
+        swarm.each(|_| Counter {
+            wrongly: self.wrongly,
+            steps: 0,
+        })
+    }
+
+    fn figures(&self) -> Vec<NotedFigure> {
+        vec![NotedFigure::share(
+            "answered",
+            "questions answered",
+            "answers",
+            "questions",
+        )]
+    }
+}
+
+/// 100 control steps of 0.1 s, three robots.
+#[test]
+fn a_part_that_is_more_than_its_whole_ends_the_run_with_an_error_that_says_so() {
+    kinds::add::<Answers>();
+    let run = |wrongly| {
+        let scenario = read(&format!("Answers(wrongly: {wrongly})"), "", &[]).unwrap();
+        run_trial(&scenario, 0, DriverKind::Inline, &Default::default())
+    };
+    let figure = Answers { wrongly: true }.figures()[0];
+    let record = run(false).unwrap();
+    assert_eq!((figure.fault(&record), figure.read(&record).value()), (None, Some(1.0)));
+    assert_eq!(
+        run(true).unwrap_err().to_string(),
+        "robots counted 300 `answers` and 150 `questions`, of which the figure `answered` is to be the share: the protocol counts wrongly"
+    );
+    let mut counted_otherwise = record;
+    counted_otherwise.noted.retain(|noted| noted.name == "answers");
+    assert_eq!(figure.read(&counted_otherwise).value(), None, "it tells nothing of it");
 }
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {

@@ -144,21 +144,17 @@ impl<P: Carried> Protocol for Heartbeat<P> {
     }
 
     fn step(&mut self, now: SimTime, input: &mut Input<Message<P>>, output: &mut Output<Message<P>>) {
-        self.detector.read(now, &input.inbox, output);
-        match input.wake {
-            Wake::Timer(_) => self.detector.expire(now, &mut input.random, output),
-            Wake::ControlStep => {
-                let settings = &self.settings;
-                output.velocity = self
-                    .wander
-                    .velocity(&settings.ground, self.id, now, input.pose.position);
-                if settings.status_turns.is_due(self.id, self.control_steps) {
-                    output.broadcasts.push(Message::Status(Status { number: self.sent }));
-                    self.sent = (self.sent + 1) % NUMBERS;
-                }
-                self.control_steps += 1;
+        self.detector.step(now, input, output);
+        if input.wake == Wake::ControlStep {
+            let settings = &self.settings;
+            output.velocity = self
+                .wander
+                .velocity(&settings.ground, self.id, now, input.pose.position);
+            if settings.status_turns.is_due(self.id, self.control_steps) {
+                output.broadcasts.push(Message::Status(Status { number: self.sent }));
+                self.sent = (self.sent + 1) % NUMBERS;
             }
-            Wake::Reception => {}
+            self.control_steps += 1;
         }
     }
 }

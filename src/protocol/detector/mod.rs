@@ -1,8 +1,83 @@
 //! When a robot believes that a neighbour is down: failure detectors behind one interface.
 //!
-//! A protocol shows its [`Detector`] every inbox that it reads, hands it the detector's [`TIMER`], and asks it whom it
-//! suspects. Which detector that is, only the scenario knows. Detectors that listen take statuses as signs of life; SWIM
-//! sends messages of its own, which the protocol carries on the topic `probe`.
+//! A protocol has its [`Detector`] [step](Detector::step) at each wake, and asks it whom it suspects. Which detector that is, only the
+//! scenario knows. Detectors that listen take statuses as signs of life; SWIM sends messages of its own, which the protocol carries on the
+//! topic `probe`.
+//!
+//! Any protocol can run one: it says which topic is its statuses' and what its messages are to a detector, its kind heeds the scenario's
+//! `detector` and `gossip.status`, and its robots get one. Reports then score it, and `desim explain` tells why it erred.
+//!
+//! ```
+//! use desim::engine::SimTime;
+//! use desim::kind::{Kind, Sections, Shared, Swarm};
+//! use desim::protocol::detector::{Detector, Monitored, Sign};
+//! use desim::protocol::gossip::OwnTurns;
+//! use desim::protocol::{Input, Output, Protocol, Serialised, Topic, Wake};
+//! # use schemars::JsonSchema;
+//! # use serde::{Deserialize, Serialize};
+//!
+//! #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+//! struct Alive;
+//!
+//! impl Monitored for Alive {
+//!     fn sign(&self) -> Sign<'_> {
+//!         Sign::Status // other messages would be `Sign::Other`
+//!     }
+//! }
+//!
+//! struct Robot {
+//!     detector: Detector,
+//!     turns: OwnTurns,
+//! }
+//!
+//! impl Protocol for Robot {
+//!     type Message = Alive;
+//!     type Heard = Alive;
+//!     type Codec = Serialised<Alive>;
+//!     const TOPICS: &'static [&'static str] = &["status"];
+//!     const ROLES: &'static [&'static str] = &["robot"];
+//!     const STATUS: Option<Topic> = Some(Topic(0));
+//!
+//!     fn step(&mut self, now: SimTime, input: &mut Input<Alive>, output: &mut Output<Alive>) {
+//!         self.detector.step(now, input, output);
+//!         if input.wake == Wake::ControlStep && self.turns.is_due() {
+//!             output.broadcast(Alive);
+//!         }
+//!     }
+//! }
+//!
+//! /// Robots that watch each other.
+//! #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+//! struct Watch;
+//!
+//! impl Kind for Watch {
+//!     const NAME: &'static str = "Watch";
+//!     type Robot = Robot;
+//!
+//!     fn robots(&self, swarm: &Swarm<'_>) -> Vec<Robot> {
+//!         swarm.each(|id| Robot {
+//!             detector: swarm.detector(id),
+//!             turns: swarm.status_turns(id),
+//!         })
+//!     }
+//!
+//!     fn heeds(&self, _: &Sections<'_>) -> &'static [Shared] {
+//!         &[Shared::Status, Shared::Detector]
+//!     }
+//! }
+//!
+//! desim::kinds::add::<Watch>();
+//! let text = "Scenario(name: \"watch\", time_limit: 9.0, swarm: (robots: 4, deploy: Cluster(radius: 0.5)), protocol: Watch,
+//!     detector: Timeout(0.5), faults: [Crash(robots: [2], at: 5.0)])";
+//! let scenario = desim::scenario::parse("watch.ron", text, &[])?;
+//! let record = desim::experiment::run_trial(&scenario, 0, Default::default(), &Default::default())?;
+//! let suspected: Vec<u32> = record.detection.suspicions.iter().map(|suspicion| suspicion.subject.0).collect();
+//! assert_eq!(suspected, [2, 2, 2]); // by each of the others
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Detectors that send messages are refused there. A protocol that has them has [`Probe`]s among its messages, and says so by
+//! [`Monitored::probe`] and [`Protocol::PROBE`](super::Protocol::PROBE); `examples/leader` does.
 
 mod config;
 mod expectation;
@@ -25,7 +100,7 @@ use std::borrow::Borrow;
 use rand_philox::Philox;
 
 use super::control::Phases;
-use super::{Output, Reception};
+use super::{Input, Output, Reception, Wake};
 use crate::engine::{ActorId, SimTime};
 use nfd_s::NfdS;
 use phi::Phi;
@@ -70,6 +145,20 @@ impl Detector {
             Self::NfdS(watch) => watch.prefetch(),
             Self::PhiAccrual(watch) => watch.prefetch(),
             Self::None | Self::Swim(_) => {}
+        }
+    }
+
+    /// All that it asks of a wake of its robot: reads the inbox, and minds its timer if that ran out. To be called at each
+    /// wake, before the robot asks it whom it [suspects](Self::suspects).
+    #[inline]
+    pub fn step<H, M>(&mut self, now: SimTime, input: &mut Input<H>, output: &mut Output<M>)
+    where
+        H: Borrow<M>,
+        M: Monitored,
+    {
+        self.read(now, &input.inbox, output);
+        if input.wake == Wake::Timer(TIMER) {
+            self.expire(now, &mut input.random, output);
         }
     }
 
@@ -146,10 +235,6 @@ mod tests {
     impl Monitored for Alive {
         fn sign(&self) -> Sign<'_> {
             Sign::Status
-        }
-
-        fn probe(_: Probe) -> Self {
-            unreachable!("detectors that listen say nothing")
         }
     }
 

@@ -1,5 +1,6 @@
 //! What messages are to a failure detector, and how they carry what it says.
 
+use std::any::type_name;
 use std::convert::Infallible;
 use std::rc::Rc;
 
@@ -10,12 +11,23 @@ use crate::protocol::TimerId;
 pub const TIMER: TimerId = TimerId(0);
 
 /// A message of a protocol whose robots run a failure detector.
-pub trait Monitored {
+pub trait Monitored: Sized {
     /// What it is to the detector.
     fn sign(&self) -> Sign<'_>;
 
-    /// A message that carries what the detector says.
-    fn probe(probe: Probe) -> Self;
+    /// A message that carries what the detector says, on the topic [`Protocol::PROBE`](crate::protocol::Protocol::PROBE). Not to be
+    /// written for messages without one: scenarios then refuse detectors that [send](super::DetectorConfig::sends).
+    ///
+    /// # Panics
+    /// If it is not written.
+    #[must_use]
+    fn probe(probe: Probe) -> Self {
+        let _ = probe;
+        panic!(
+            "{} carries nothing of a failure detector that sends messages",
+            type_name::<Self>()
+        )
+    }
 }
 
 /// How a message carries what a detector says. Protocols that are measured for their speed have messages without that, for

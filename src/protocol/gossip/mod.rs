@@ -12,4 +12,4 @@ pub use config::{
     TimeToLiveConfig, TopicConfig,
 };
 pub use repeat::{Repeat, Repetition};
-pub use turns::{Timing, Turns};
+pub use turns::{OwnTurns, Timing, Turns};

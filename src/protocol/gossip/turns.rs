@@ -80,6 +80,16 @@ impl Turns {
         place < places && place == self.place(robot, step / every)
     }
 
+    /// Those of one robot, before its first control step.
+    #[must_use]
+    pub const fn of(self, robot: ActorId) -> OwnTurns {
+        OwnTurns {
+            turns: self,
+            robot,
+            step: 0,
+        }
+    }
+
     /// The rhythm.
     #[must_use]
     pub const fn timing(&self) -> Timing {
@@ -92,6 +102,23 @@ impl Turns {
         }
         let [word, _] = self.jitter.first_two(robot.0, self.rhythm as u32, interval as u32);
         ((u128::from(word) * u128::from(self.timing.places)) >> 64) as u64
+    }
+}
+
+/// The turns of one topic, for one robot, which counts its control steps.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnTurns {
+    turns: Turns,
+    robot: ActorId,
+    step: u64,
+}
+
+impl OwnTurns {
+    /// Whether the robot has its turn at this control step: to be asked once at each.
+    pub fn is_due(&mut self) -> bool {
+        let is_due = self.turns.is_due(self.robot, self.step);
+        self.step += 1;
+        is_due
     }
 }
 

@@ -269,6 +269,17 @@ fn a_suspicion_by_probes_is_told_as_one() {
 }
 
 #[test]
+fn robots_without_statuses_are_not_explained() {
+    let dir = tempdir().unwrap();
+    let text = "Scenario(name: \"news\", time_limit: 60.0, swarm: (robots: 3, deploy: Cluster(radius: 0.5)), protocol: Rumor(mode: Push))";
+    fs::write(dir.path().join("news.ron"), text).unwrap();
+    desim(dir.path(), &["scenario", "news.ron", "--quiet", "--out", "there"]).success();
+    let refused = desim(dir.path(), &["explain", "there", "--trial", "0", "--robot", "1"]).code(2);
+    let error = String::from_utf8(refused.get_output().stderr.clone()).unwrap();
+    assert!(error.contains("robots that run Rumor send no statuses"), "{error}");
+}
+
+#[test]
 fn a_manifest_whose_scenario_cannot_be_run_is_refused_by_its_field() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("still.ron"), text("seed: 3")).unwrap();

@@ -2,6 +2,7 @@
 //!
 //! A figure must lie within four standard errors. Seeds are fixed: what passes goes on passing.
 
+mod foreign;
 mod missions;
 mod moving;
 mod nfd_s;

@@ -10,6 +10,7 @@
 //! Ids and incarnations take seven bits a byte, the lowest first, the top bit set in all but the last.
 
 use bytes::{Buf, BufMut, BytesMut};
+use serde::{Deserialize, Serialize};
 
 use crate::engine::ActorId;
 use crate::protocol::CodecError;
@@ -21,8 +22,9 @@ const ACK: u8 = 0x42;
 /// Bytes of the longest number.
 const LONGEST: usize = 5;
 
-/// A message of SWIM. All are broadcast and name whom they are for; the news in it is for everybody.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A message of SWIM. All are broadcast and name whom they are for; the news in it is for everybody. Its bytes are those of
+/// [`encode`](Self::encode), or, in a message that is [`Serialised`](crate::protocol::Serialised), as many or a few more.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Probe {
     /// What it asks or answers.
     pub call: Call,
@@ -33,7 +35,7 @@ pub struct Probe {
 }
 
 /// What a message asks or answers.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Call {
     /// Asks a robot to acknowledge.
     Ping {
@@ -55,7 +57,7 @@ pub enum Call {
 }
 
 /// A claim about a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct News {
     /// The robot.
     pub about: ActorId,
@@ -66,7 +68,7 @@ pub struct News {
 }
 
 /// What is claimed of a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Claim {
     /// It says itself that it is alive.
     Alive,
