@@ -105,7 +105,9 @@ impl<A: Entry, B: Entry> Entry for (A, B) {
 
 impl<T: Entry + Copy + Default, const N: usize> Entry for [T; N] {
     fn put(&self, into: &mut Vec<u8>) {
-        self.iter().for_each(|value| value.put(into));
+        for value in self {
+            value.put(into);
+        }
     }
 
     fn take(from: &mut &[u8]) -> Option<Self> {
@@ -121,7 +123,9 @@ impl<T: Entry + Copy + Default, const N: usize> Entry for [T; N] {
 impl<T: Entry> Entry for Vec<T> {
     fn put(&self, into: &mut Vec<u8>) {
         (self.len() as u32).put(into);
-        self.iter().for_each(|value| value.put(into));
+        for value in self {
+            value.put(into);
+        }
     }
 
     fn take(from: &mut &[u8]) -> Option<Self> {

@@ -40,7 +40,7 @@ impl<'a, T: Entry> Iter<'a, T> {
                 if self.block.1.is_empty() || self.block.0 != block {
                     let start = block * size;
                     let bytes = spilled.read(start, size.min(spilled.len() - start));
-                    self.block = (block, bytes.unwrap_or_else(unreadable));
+                    self.block = (block, bytes.unwrap_or_else(|error| unreadable(&error)));
                 }
                 &self.block.1[at % size..]
             }

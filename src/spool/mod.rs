@@ -174,7 +174,9 @@ impl<T: Entry> Spool<T> {
         let at = place * self.width;
         let (in_file, scratch) = (self.in_file(), &self.scratch);
         match &mut self.spilled {
-            Some(spilled) if at < in_file => spilled.write(at, &bytes, scratch.folder()).unwrap_or_else(unreadable),
+            Some(spilled) if at < in_file => spilled
+                .write(at, &bytes, scratch.folder())
+                .unwrap_or_else(|error| unreadable(&error)),
             _ => self.tail[at - in_file..][..self.width].copy_from_slice(&bytes),
         }
     }
@@ -222,7 +224,7 @@ pub trait Spooled {
 }
 
 /// A file of one's own that cannot be read or written is no input to complain about: the machine fails.
-fn unreadable<T>(error: io::Error) -> T {
+fn unreadable<T>(error: &io::Error) -> T {
     panic!("what a run has kept in a file cannot be read again: {error}")
 }
 

@@ -30,6 +30,7 @@ impl Times {
     }
 
     /// The times, in order.
+    #[must_use]
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Observation> + Clone {
         self.0.iter().map(|time| Observation {
             time: time.abs(),
@@ -286,7 +287,9 @@ impl Curve {
 #[must_use]
 pub fn pseudo_values(times: &[Times]) -> (Vec<Part>, Lasting) {
     let mut all = Times::with_capacity(times.iter().map(Times::len).sum());
-    times.iter().for_each(|times| all.0.extend(&times.0));
+    for times in times {
+        all.0.extend(&times.0);
+    }
     let cut_off = all.iter().filter(|seen| !seen.happened).count() as u64;
     let (none_happened, is_empty) = (all.len() as u64 == cut_off, all.is_empty());
     let curve = Curve::of(all);

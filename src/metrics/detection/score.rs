@@ -166,7 +166,7 @@ impl Scorer {
                     duration: None,
                     cut_off: false,
                 };
-                self.suspect(suspicion);
+                self.suspect(&suspicion);
             }
             Note::Trusts(subject) => {
                 self.cross_until(now);
@@ -211,10 +211,10 @@ impl Scorer {
         self.watchers[subject.index()].push(observer);
     }
 
-    fn suspect(&mut self, suspicion: Suspicion) {
+    fn suspect(&mut self, suspicion: &Suspicion) {
         let Suspicion {
             observer, subject, at, ..
-        } = suspicion;
+        } = *suspicion;
         let able = self.is_able(observer, subject);
         let pair = find(&mut self.pairs, observer, subject);
         pair.settle(at, &mut self.tally);
@@ -222,7 +222,7 @@ impl Scorer {
         // One that they brought with them is a mistake once they have been in range for long enough.
         let brought = able && (at..SimTime::NEVER).contains(&pair.settled);
         pair.mistaken = brought || suspicion.verdict() == Verdict::Mistake;
-        self.tally.suspicions.push(&suspicion);
+        self.tally.suspicions.push(suspicion);
         pair.resume(at, able);
     }
 
@@ -233,7 +233,7 @@ impl Scorer {
         pair.end_mistake(now, false, &mut self.tally);
         if let Some(suspicion) = pair.suspicion.take() {
             change(&mut self.tally.suspicions, suspicion, |suspicion| {
-                suspicion.until = Some(now)
+                suspicion.until = Some(now);
             });
         }
         pair.resume(now, able);

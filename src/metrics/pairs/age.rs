@@ -27,11 +27,11 @@ pub(super) struct Age {
 #[derive(Debug, Default)]
 pub(super) struct Ages {
     /// Mean over time.
-    pub mean_s: Option<f64>,
+    pub mean: Option<f64>,
     /// Mean of the ages from which it fell.
-    pub peak_s: Option<f64>,
+    pub peak: Option<f64>,
     /// What it is no more than 95 % of the time, within 1/128.
-    pub p95_s: Option<f64>,
+    pub p95: Option<f64>,
 }
 
 impl Age {
@@ -81,9 +81,9 @@ impl Age {
         self.grow(end);
         let seconds = |nanos: f64| nanos / 1e9;
         Ages {
-            mean_s: (self.known > 0).then(|| seconds(self.twice_area as f64 / 2.0 / self.known as f64)),
-            peak_s: (self.peaks > 0).then(|| seconds(self.peak_sum as f64 / self.peaks as f64)),
-            p95_s: self.to.and_then(|to| quantile(&self.from, &to, 0.95)),
+            mean: (self.known > 0).then(|| seconds(self.twice_area as f64 / 2.0 / self.known as f64)),
+            peak: (self.peaks > 0).then(|| seconds(self.peak_sum as f64 / self.peaks as f64)),
+            p95: self.to.and_then(|to| quantile(&self.from, &to, 0.95)),
         }
     }
 }
@@ -133,18 +133,18 @@ mod tests {
         age.arrived(at(3.0), at(7.0));
         // 1 s to 6 s in five seconds, then 2 s to 6 s in four.
         let told = age.told(at(10.0));
-        assert_eq!((told.mean_s, told.peak_s), (Some((17.5 + 16.0) / 9.0), Some(6.0)));
+        assert_eq!((told.mean, told.peak), (Some((17.5 + 16.0) / 9.0), Some(6.0)));
         // Of the nine seconds 0.45 are spent above it, at a pace of two ages a second.
-        let p95 = told.p95_s.unwrap();
+        let p95 = told.p95.unwrap();
         assert!((p95 - 5.775).abs() < 0.05, "{p95}");
     }
 
     #[test]
     fn a_single_status_ages_until_the_end_and_has_no_peak() {
         let told = Age::since(at(2.0), at(2.5)).told(at(12.5));
-        assert_eq!((told.mean_s, told.peak_s), (Some(5.5), None));
-        assert!((told.p95_s.unwrap() - 10.0).abs() < 0.08);
+        assert_eq!((told.mean, told.peak), (Some(5.5), None));
+        assert!((told.p95.unwrap() - 10.0).abs() < 0.08);
         let none = Age::since(at(2.0), at(2.5)).told(at(2.5));
-        assert_eq!((none.mean_s, none.peak_s, none.p95_s), (None, None, None));
+        assert_eq!((none.mean, none.peak, none.p95), (None, None, None));
     }
 }

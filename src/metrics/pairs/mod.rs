@@ -59,21 +59,21 @@ pub static MEASURES: &[PairMeasure] = &[
         name: "age of status by pair, mean",
         unit: SECONDS,
         better: Better::Lower,
-        value: |told| told.ages.mean_s,
+        value: |told| told.ages.mean,
     },
     PairMeasure {
         key: "age_peak_s",
         name: "age of status by pair, peaks",
         unit: SECONDS,
         better: Better::Lower,
-        value: |told| told.ages.peak_s,
+        value: |told| told.ages.peak,
     },
     PairMeasure {
         key: "age_p95_s",
         name: "age of status by pair, 95 % of the time",
         unit: SECONDS,
         better: Better::Lower,
-        value: |told| told.ages.p95_s,
+        value: |told| told.ages.p95,
     },
 ];
 
@@ -171,7 +171,9 @@ impl Pairs {
     pub(super) fn into_records(mut self, end: SimTime) -> Vec<PairRecord> {
         let mut unread = std::mem::take(&mut self.unread);
         unread.sort_by_key(|(at, _)| *at);
-        unread.iter().for_each(|(at, copy)| self.refresh(copy, *at));
+        for (at, copy) in &unread {
+            self.refresh(copy, *at);
+        }
         let receivers = (0..).map(ActorId).zip(self.heard);
         let record = move |receiver: ActorId, sender: ActorId, mut pair: Pair| {
             let ages = pair.age.take().map_or_else(Ages::default, |age| age.told(end));

@@ -1,5 +1,6 @@
 //! The recorder: told of everything that happens in a run, it leaves a [`TrialRecord`].
 
+mod closing;
 mod observer;
 
 use crate::engine::{ActorId, SimTime, Span};
@@ -11,6 +12,8 @@ use crate::protocol::{CompletionConfig, MessageSize, Note, Topic};
 use crate::radio::LossCause;
 use crate::spool::{Scratch, Spool};
 
+use closing::{ledger, robots};
+
 use super::completion::{Hearing, Judge, Progress};
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
@@ -21,12 +24,11 @@ use super::latency::LatencyHistogram;
 use super::mission::{Mission, Scene};
 use super::noted::Notes;
 use super::pairs::Pairs;
-use super::record::{ConnectivitySample, Outcome, RobotState, TrialRecord};
+use super::record::{ConnectivitySample, Outcome, TrialRecord};
 use super::reports::Reports;
 use super::series::Series;
 use super::spread::Spread;
 use super::traffic::{HeaderBytes, Traffic};
-use super::volume::{TopicFates, TrafficRow};
 
 /// The shape of a run, known before it starts.
 #[derive(Clone, Debug)]
@@ -360,46 +362,9 @@ impl Recorder {
     }
 }
 
-/// Fates by topic: what was delivered and lost from the receivers' rows, the rest as counted at the senders.
-fn ledger(offered: &[u64], in_flight: &[u64], traffic: &[TrafficRow]) -> Vec<TopicFates> {
-    let counted = offered.iter().zip(in_flight);
-    let mut ledger: Vec<_> = counted
-        .map(|(&offered, &in_flight)| TopicFates {
-            offered,
-            in_flight,
-            ..TopicFates::default()
-        })
-        .collect();
-    for row in traffic {
-        let fates = &mut ledger[usize::from(row.topic)];
-        fates.delivered += row.received.frames;
-        for (lost, volume) in fates.lost.iter_mut().zip(&row.lost) {
-            *lost += volume.frames;
-        }
-    }
-    ledger
-}
-
 /// A coordinate as pictures have it. One beyond what they can hold stays finite: a record must be read back.
 fn for_pictures(coordinate: f64) -> f32 {
     coordinate.clamp(f32::MIN.into(), f32::MAX.into()) as f32
-}
-
-/// The robots as they ended.
-fn robots(reports: Reports, poses: Vec<Pose>, steps: &[u64]) -> Vec<RobotState> {
-    let states = reports.roles.into_iter().zip(reports.targets).zip(reports.parents);
-    poses
-        .into_iter()
-        .zip(states)
-        .zip(steps)
-        .map(|((pose, ((role, target), parents)), &steps)| RobotState {
-            pose,
-            role: role.0,
-            target,
-            parents,
-            steps,
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 use super::*;
 use crate::faults::{Effect, Health};
 use crate::metrics::figures::Registry;
+use crate::metrics::volume::TopicFates;
 use crate::protocol::Role;
 use crate::spool::Scratch;
 

@@ -94,8 +94,8 @@ impl Beliefs {
     /// Counts those of a trial.
     pub fn count(&mut self, trial: &DetectionRecord) {
         for suspicion in &trial.suspicions {
-            one_more(&mut self.by_cause, suspicion.cause);
-            one_more(&mut self.by_verdict, suspicion.verdict());
+            one_more(&mut self.by_cause, &suspicion.cause);
+            one_more(&mut self.by_verdict, &suspicion.verdict());
         }
         self.suspicions += trial.suspicions.len() as u64;
         self.monitored_s += trial.monitored_s;
@@ -111,8 +111,8 @@ impl Beliefs {
 }
 
 /// One more of `kind`.
-fn one_more<K: PartialEq>(numbers: &mut [(K, u64)], kind: K) {
-    if let Some((_, number)) = numbers.iter_mut().find(|(own, _)| *own == kind) {
+fn one_more<K: PartialEq>(numbers: &mut [(K, u64)], kind: &K) {
+    if let Some((_, number)) = numbers.iter_mut().find(|(own, _)| own == kind) {
         *number += 1;
     }
 }

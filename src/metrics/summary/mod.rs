@@ -143,7 +143,9 @@ impl Summary {
     #[must_use]
     pub fn by(registry: &Registry, scenario: &str, topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Self {
         let mut trials = Trials::new(registry);
-        records.iter().for_each(|record| trials.add(record.clone()));
+        for record in records {
+            trials.add(record.clone());
+        }
         trials.summary(scenario, topics, roles)
     }
 

@@ -101,7 +101,7 @@ fn a_status_under_way_at_a_suspicion_is_so_told_though_it_was_lost_on_its_arriva
     let (record, explanation) = traced(&scenario, 0);
     let missed = &record.detection.suspicions.get(0).unwrap().missed;
     assert_eq!((missed.lost[LossCause::LinkFault as usize], missed.under_way), (4, 1));
-    let told = &explanation.suspicions.get(0).unwrap();
+    let told = &explanation.suspicions[0];
     assert_eq!((told.observer, told.suspected_s), (1, 1.5));
     let under_way = Fate::UnderWay {
         arrives_s: 1.65,
@@ -156,10 +156,7 @@ fn a_robot_that_was_mute_is_explained_by_that() {
 fn a_burst_on_a_link_is_told_status_by_status() {
     let burst = "faults: [Burst(links: Of([0]), loss: 1.0, during: Between(1.0, 1.55))]";
     let (_, explanation) = traced(&scenario(burst), 0);
-    let sent: Vec<f64> = explanation
-        .suspicions
-        .get(0)
-        .unwrap()
+    let sent: Vec<f64> = explanation.suspicions[0]
         .statuses
         .iter()
         .map(|status| status.sent_s)
@@ -173,7 +170,7 @@ fn a_burst_on_a_link_is_told_status_by_status() {
             .iter()
             .all(|suspicion| suspicion.statuses.iter().all(lost))
     );
-    assert_eq!(explanation.suspicions.get(0).unwrap().verdict, "mistake");
+    assert_eq!(explanation.suspicions[0].verdict, "mistake");
     insta::assert_snapshot!(explanation.text(None, Style::PLAIN));
 }
 

@@ -136,7 +136,7 @@ fn a_kept_trial_comes_back_bit_for_bit() {
         record.connectivity.change(place, |sample| sample.lambda2 = lambda2);
     }
     record.trajectories.change(0, |(_, places)| {
-        places[0] = [f32::MIN_POSITIVE / 8.0, 16_777_217.0_f32.sqrt()]
+        places[0] = [f32::MIN_POSITIVE / 8.0, 16_777_217.0_f32.sqrt()];
     });
     record.robots[0].pose.heading = -0.0;
     record.detection.monitored_s = 1e17 / 3.0;

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::protocol::{Address, Frame, Reception};
-use crate::spool::Scratch;
 
 const OBSERVER: ActorId = ActorId(0);
 const SUBJECT: ActorId = ActorId(1);
@@ -119,6 +118,10 @@ fn assert_time(record: &DetectionRecord, monitored: f64, mistaken: f64) {
     );
 }
 
+fn first(record: &DetectionRecord) -> Suspicion {
+    record.suspicions.first().expect("somebody was suspected")
+}
+
 #[test]
 fn a_mistake_counts_as_monitored_time_and_lasts_until_trust() {
     let mut bench = Bench::new();
@@ -127,7 +130,7 @@ fn a_mistake_counts_as_monitored_time_and_lasts_until_trust() {
     bench.trust(6.0);
     let (record, _) = bench.outcomes();
     assert_time(&record, 29.0, 0.5);
-    let suspicion = &record.suspicions.get(0).unwrap();
+    let suspicion = &first(&record);
     assert_eq!(
         (suspicion.verdict(), suspicion.cause),
         (Verdict::Mistake, Cause::Lost(LossCause::Channel))
@@ -144,14 +147,8 @@ fn a_robot_out_of_range_is_not_mistaken_for_a_failed_one_and_not_monitored_until
     bench.suspect(10.0, 6);
     bench.trust(20.0);
     let (record, _) = bench.outcomes();
-    assert_eq!(record.suspicions.get(0).unwrap().verdict(), Verdict::OutOfRange);
-    assert_eq!(
-        (
-            record.suspicions.get(0).unwrap().missed.out_of_range,
-            record.suspicions.get(0).unwrap().duration
-        ),
-        (3, None)
-    );
+    assert_eq!(first(&record).verdict(), Verdict::OutOfRange);
+    assert_eq!((first(&record).missed.out_of_range, first(&record).duration), (3, None));
     assert_time(&record, 9.0 + 10.0, 0.0);
 }
 
@@ -183,7 +180,7 @@ fn a_mistake_that_comes_true_is_a_detection_without_delay_and_is_cut_off() {
     bench.0.fault(at(10.0), SUBJECT, MUTE);
     let (record, outcomes) = bench.outcomes();
     assert_eq!(outcomes, [FailureOutcome::Detected(Span::ZERO)]);
-    let suspicion = &record.suspicions.get(0).unwrap();
+    let suspicion = &first(&record);
     assert_eq!(
         (suspicion.duration, suspicion.cut_off),
         (Some(Span::from_secs(0.5)), true)
@@ -198,10 +195,7 @@ fn mistakes_that_the_end_or_the_observers_own_failure_cuts_off_say_how_long_they
     ended.suspect(28.5, 24);
     let (record, _) = ended.outcomes();
     let cut = |suspicion: &Suspicion| (suspicion.duration, suspicion.cut_off, suspicion.until);
-    assert_eq!(
-        cut(&record.suspicions.get(0).unwrap()),
-        (Some(Span::from_secs(1.5)), true, None)
-    );
+    assert_eq!(cut(&first(&record)), (Some(Span::from_secs(1.5)), true, None));
 
     let mut deaf = Bench::new();
     deaf.lose(4..6);
@@ -211,7 +205,7 @@ fn mistakes_that_the_end_or_the_observers_own_failure_cuts_off_say_how_long_they
     deaf.trust(10.0);
     let (record, _) = deaf.outcomes();
     assert_eq!(
-        cut(&record.suspicions.get(0).unwrap()),
+        cut(&first(&record)),
         (Some(Span::from_secs(1.75)), true, Some(at(10.0))),
         "trust after the failure says nothing of how long the mistake would have lasted"
     );
@@ -219,25 +213,20 @@ fn mistakes_that_the_end_or_the_observers_own_failure_cuts_off_say_how_long_they
 
 #[test]
 fn each_failure_says_how_long_it_was_watched() {
+    let watched = |bench: Bench| bench.outcomes().0.failures.first().map(|failure| failure.watched);
     let mut detected = Bench::new();
     detected.0.fault(at(10.0), SUBJECT, MUTE);
     detected.suspect(13.5, 9);
-    assert_eq!(
-        detected.outcomes().0.failures.get(0).unwrap().watched,
-        Span::from_secs(3.5)
-    );
+    assert_eq!(watched(detected), Some(Span::from_secs(3.5)));
 
     let mut recovered = Bench::new();
     recovered.0.fault(at(10.0), SUBJECT, MUTE);
     recovered.0.fault(at(11.25), SUBJECT, Health::WELL);
-    assert_eq!(
-        recovered.outcomes().0.failures.get(0).unwrap().watched,
-        Span::from_secs(1.25)
-    );
+    assert_eq!(watched(recovered), Some(Span::from_secs(1.25)));
 
     let mut late = Bench::new();
     late.0.fault(at(29.0), SUBJECT, MUTE);
-    assert_eq!(late.outcomes().0.failures.get(0).unwrap().watched, Span::from_secs(1.0));
+    assert_eq!(watched(late), Some(Span::from_secs(1.0)));
 }
 
 #[test]
@@ -264,7 +253,7 @@ fn a_suspicion_after_a_failure_that_filled_most_of_the_silence_is_due_to_it() {
     bench.0.fault(at(4.0), SUBJECT, MUTE);
     bench.0.fault(at(7.5), SUBJECT, Health::WELL);
     bench.suspect(8.0, 3);
-    let suspicion = &bench.outcomes().0.suspicions.get(0).unwrap();
+    let suspicion = first(&bench.outcomes().0);
     assert_eq!(
         (suspicion.verdict(), suspicion.cause),
         (Verdict::Mistake, Cause::Failure)
@@ -300,7 +289,7 @@ fn a_mistake_is_cut_off_when_the_two_part_and_so_is_its_time() {
     bench.cross(20.0, true);
     bench.trust(20.5);
     let (record, _) = bench.outcomes();
-    let mistake = &record.suspicions.get(0).unwrap();
+    let mistake = &first(&record);
     assert_eq!(mistake.verdict(), Verdict::Mistake);
     assert_eq!(
         (mistake.duration, mistake.cut_off, mistake.until),
@@ -317,7 +306,7 @@ fn who_falls_silent_by_leaving_is_not_mistaken_however_much_was_lost_before() {
     bench.cross(9.0, false);
     bench.suspect(9.5, 6);
     let (record, _) = bench.outcomes();
-    let suspicion = &record.suspicions.get(0).unwrap();
+    let suspicion = &first(&record);
     assert_eq!(
         (suspicion.verdict(), suspicion.cause, suspicion.duration),
         (Verdict::OutOfRange, Cause::OutOfRange, None)
@@ -334,7 +323,7 @@ fn a_silence_that_began_before_the_two_met_again_is_not_the_detectors() {
     bench.suspect(9.5, 7);
     bench.trust(10.0);
     let (record, _) = bench.outcomes();
-    assert_eq!(record.suspicions.get(0).unwrap().verdict(), Verdict::OutOfRange);
+    assert_eq!(first(&record).verdict(), Verdict::OutOfRange);
     assert_time(&record, 6.5 + 19.0, 0.0);
 
     let mut longer = Bench::new();
@@ -344,7 +333,7 @@ fn a_silence_that_began_before_the_two_met_again_is_not_the_detectors() {
     longer.suspect(9.5, 7);
     longer.trust(12.0);
     let (record, _) = longer.outcomes();
-    assert_eq!(record.suspicions.get(0).unwrap().duration, None);
+    assert_eq!(first(&record).duration, None);
     assert_time(&record, 6.5 + 19.0, 1.0);
 }
 
@@ -369,7 +358,7 @@ fn who_is_in_range_for_the_whole_patience_and_still_suspected_is_mistaken_from_t
         [Verdict::OutOfRange, Verdict::Mistake]
     );
     assert_eq!(
-        record.suspicions.get(0).unwrap().duration,
+        first(&record).duration,
         None,
         "it is not known when it would have begun"
     );
