@@ -15,6 +15,8 @@
 //! desim = { package = "desim-swarm", version = "0.1" }
 //! serde = { version = "1", features = ["derive"] } # messages, and settings in a scenario
 //! schemars = "1"                                   # settings, as editors and error messages know them
+//! # rand = "0.10"                                  # to draw from Input::random
+//! # bytes = "1", tokio-util = "0.7"                # for messages that are encoded by hand
 //! ```
 //!
 //! | feature, all on by default | what it adds |
@@ -79,7 +81,8 @@
 //!
 //! A [`Kind`](kind::Kind) is what `protocol: RollCall(...)` means in a scenario file: settings that make the robots of a swarm. Its
 //! [figures](metrics::NotedFigure) are read off what robots note. All else that a kind may say has a default: what completes
-//! its mission, what is wrong with its settings, which settings of a scenario its robots heed.
+//! its mission, what is wrong with its settings, which settings of a scenario its robots heed. What no robot can know, an observer of every trial
+//! can: [`Start::observe`](kind::Start::observe).
 //!
 #![doc = concat!(
     "```\n# mod robot { include!(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/examples/roll_call/robot.rs\")); }\n# fn main() {}\n",
@@ -108,9 +111,13 @@
 //!
 //! ```sh
 //! cargo run --release -- check roll_call.ron --predict   # what is wrong with it, and what to expect
+//! cargo run --release -- check roll_call.ron --resolved  # every setting, defaults worked in
 //! cargo run --release -- scenario roll_call.ron          # run it, into results/roll_call
 //! cargo run --release -- report results/roll_call        # charts
 //! ```
+//!
+//! `--set radio.loss=None` changes a setting for once, `--force` runs again what is there. Results that another build of your program has made are
+//! refused, and never mixed with new ones: its protocol may have been another.
 //!
 //! # Study it
 //!
@@ -203,7 +210,7 @@
 //!
 //! # What happens in which order
 //!
-//! - Time is whole nanoseconds. At one instant: the motion tick, then faults, then robot wakes, then samples.
+//! - Time is whole nanoseconds. At one instant: the motion tick, then faults, then events of the radio, then robot wakes, then samples.
 //! - Robots that wake at one instant all see the world as it was before any of them acted. Their answers take effect in
 //!   the order of their wakes, which is first-in-first-out.
 //! - A robot that wakes at t has in its inbox what arrived up to and including t, by time of arrival.
@@ -212,7 +219,7 @@
 //!
 //! # What makes two runs the same
 //!
-//! The scenario, the seed and the version; not the driver, the number of threads or the build profile. Every random draw
+//! The scenario, the seed, the version, and your own protocol's code; not the driver, the number of threads or the build profile. Every random draw
 //! is keyed by what it is for ([`engine::Streams`]), so no draw depends on how many came before it.
 //!
 //! # Where things are

@@ -1,6 +1,6 @@
 use crate::robot::Robot;
 use desim::engine::Span;
-use desim::kind::{Kind, Swarm};
+use desim::kind::{Kind, Sections, Swarm};
 use desim::metrics::NotedFigure;
 use desim::quantity::Positive;
 use schemars::JsonSchema;
@@ -20,6 +20,10 @@ impl Kind for RollCall {
 
     fn robots(&self, swarm: &Swarm<'_>) -> Vec<Robot> {
         swarm.each(|_| Robot::calling_every(Span::from_secs(self.interval.get())))
+    }
+
+    fn moves(&self, _: &Sections<'_>) -> bool {
+        false
     }
 
     fn figures(&self) -> Vec<NotedFigure> {

@@ -1,12 +1,14 @@
 //! `manifest.json`: what a results folder is the result of, and what it took.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::files::PAGE;
-use super::held::FileEntry;
+use super::held::{FileEntry, measure};
+use crate::kinds;
 use crate::scenario::Scenario;
 
 /// What `manifest.json` holds. The only file of a results folder that depends on the machine.
@@ -16,6 +18,10 @@ pub struct Manifest {
     pub version: String,
     /// Commit that it was built from, where the build was told (environment variable `DESIM_COMMIT`).
     pub commit: Option<String>,
+    /// The program that made it, where the protocol is the program's own: the XXH3-128 hash of its file. Another build of it may hold another
+    /// protocol.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program: Option<String>,
     /// The question that the scenario asks: the first comment of its file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub question: Option<String>,
@@ -56,6 +62,7 @@ impl Manifest {
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: option_env!("DESIM_COMMIT").map(str::to_owned),
+            program: program(scenario),
             question: None,
             finished: false,
             scenario: serde_json::to_value(scenario).expect("a scenario holds only what JSON can write"),
@@ -80,6 +87,7 @@ impl Manifest {
         if self.version != asked.version {
             lines.push(format!("desim {} there, {} now", self.version, asked.version));
         }
+        lines.extend(other_program(self.program.as_ref(), asked.program.as_ref()));
         let fields = self.scenario_differences(asked).into_iter();
         let counts = |field: &Difference| self.finished || field.path != "trials";
         lines.extend(fields.filter(counts).map(|difference| difference.line()));
@@ -105,6 +113,24 @@ impl Manifest {
 pub(super) fn made_by(version: &str, commit: Option<&str>) -> String {
     let commit = commit.map(|commit| format!(" ({commit})"));
     format!("desim {version}{}", commit.unwrap_or_default())
+}
+
+/// The hash of this program's file, if the protocol of `scenario` is not one that desim ships: then it is the program's own.
+#[must_use]
+pub fn program(scenario: &Scenario) -> Option<String> {
+    static HASH: OnceLock<Option<String>> = OnceLock::new();
+    let hash = || {
+        let measured = measure(&std::env::current_exe().ok()?).ok()?;
+        Some(measured.xxh3_128)
+    };
+    let own = !kinds::is_shipped(scenario.protocol.name());
+    own.then(|| HASH.get_or_init(hash).clone()).flatten()
+}
+
+/// What to say of results of another program than `asked`.
+pub(super) fn other_program(there: Option<&String>, asked: Option<&String>) -> Option<String> {
+    let differs = there.zip(asked).is_some_and(|(there, asked)| there != asked);
+    differs.then(|| "another build of this program made them, whose protocol may have been another".to_owned())
 }
 
 /// A value of a scenario that is another one in another scenario.
@@ -155,6 +181,7 @@ mod tests {
         Manifest {
             version: "1".into(),
             commit: None,
+            program: None,
             question: None,
             finished,
             scenario,
@@ -196,5 +223,19 @@ mod tests {
         let mut other = manifest(false, json!({}));
         other.version = "2".into();
         assert_eq!(manifest(true, json!({})).differences(&other), ["desim 1 there, 2 now"]);
+    }
+
+    #[test]
+    fn results_of_another_build_of_ones_own_program_differ_and_of_none_do_not() {
+        let made = |program: Option<&str>| Manifest {
+            program: program.map(str::to_owned),
+            ..manifest(true, json!({ "trials": 3 }))
+        };
+        assert_eq!(made(Some("a")).differences(&made(Some("a"))), [""; 0]);
+        let [line] = &made(Some("a")).differences(&made(Some("b")))[..] else {
+            panic!("one difference")
+        };
+        assert!(line.contains("another build of this program"));
+        assert_eq!(made(None).differences(&made(None)), [""; 0]);
     }
 }

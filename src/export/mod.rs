@@ -27,7 +27,7 @@ mod write;
 pub use files::PAGE;
 pub use folder::{Contents, Folder};
 pub use held::{FileEntry, sealed};
-pub use manifest::{Difference, Manifest, TrialEntry};
+pub use manifest::{Difference, Manifest, TrialEntry, program};
 pub use names::Names;
 pub use place::{FolderError, WriteError, json};
 pub use read::NameLists;

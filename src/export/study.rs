@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::files::{MANIFEST, PAGE};
 use super::folder::{Contents, Folder, hold_page};
 use super::held::{FileEntry, document, held, sealed, unseal};
-use super::manifest::{Difference, Manifest, compare, made_by};
+use super::manifest::{Difference, Manifest, compare, made_by, other_program};
 use super::picture;
 use super::place::{FolderError, Place, failed, json};
 use crate::metrics::comparison::{Comparison, Trials};
@@ -31,6 +31,9 @@ pub struct StudyManifest {
     pub version: String,
     /// Commit that it was built from, where the build was told.
     pub commit: Option<String>,
+    /// The program that made it, as [`Manifest::program`] has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub program: Option<String>,
     /// Whether everything is there.
     pub finished: bool,
     /// What is compared and how: all but the scenarios of the settings, which their own manifests hold.
@@ -45,10 +48,11 @@ pub struct StudyManifest {
 impl StudyManifest {
     /// Of a study that has just begun.
     #[must_use]
-    pub fn new(plan: Value, settings: Vec<String>) -> Self {
+    pub fn new(plan: Value, settings: Vec<String>, program: Option<String>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: option_env!("DESIM_COMMIT").map(str::to_owned),
+            program,
             finished: false,
             plan,
             settings,
@@ -94,6 +98,7 @@ impl StudyManifest {
         if self.version != asked.version {
             lines.push(format!("desim {} there, {} now", self.version, asked.version));
         }
+        lines.extend(other_program(self.program.as_ref(), asked.program.as_ref()));
         let mut found = Vec::new();
         compare("", &self.plan, &asked.plan, &mut found);
         lines.extend(found.iter().map(Difference::line));

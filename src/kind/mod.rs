@@ -99,6 +99,9 @@ use crate::simulation::RunError;
 /// A kind of protocol: what a scenario names, and what is said of it field by field. [The module](self) has an example, and so has
 /// [the crate's page](crate#name-it-in-a-scenario).
 ///
+/// Most kinds need no more than [`robots`](Self::robots), [`figures`](Self::figures) and [`problems`](Self::problems), and, if their robots stand
+/// still, [`moves`](Self::moves). The rest is for missions, for settings that desim's own protocols share, and for what closed forms expect.
+///
 /// The config's doc comments are what editors and messages show, from its JSON Schema. It should be a struct with
 /// `deny_unknown_fields`, so that a misspelt field is refused; a unit struct is named without brackets.
 pub trait Kind: Clone + Debug + PartialEq + Serialize + DeserializeOwned + JsonSchema + Send + Sync + 'static {
@@ -117,7 +120,8 @@ pub trait Kind: Clone + Debug + PartialEq + Serialize + DeserializeOwned + JsonS
         Goal::None
     }
 
-    /// Runs a trial. To be written by a kind that has robots of several types for one config; others make
+    /// Runs a trial. To be written by a kind that has robots of several types for one config, or that wants every trial of a scenario
+    /// [observed](Start::observe): what only an observer can know may be added to the record ([`TrialRecord::note`]) and have figures. Others make
     /// [`robots`](Self::robots) and say their [`goal`](Self::goal).
     ///
     /// # Errors

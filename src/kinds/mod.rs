@@ -27,13 +27,15 @@ struct Registry {
     names: &'static [&'static str],
 }
 
-static REGISTRY: LazyLock<RwLock<Registry>> = LazyLock::new(|| {
-    RwLock::new(Registry::of(vec![
+static REGISTRY: LazyLock<RwLock<Registry>> = LazyLock::new(|| RwLock::new(Registry::of(shipped().to_vec())));
+
+fn shipped() -> [Entry; 3] {
+    [
         Entry::of::<backbone::BackboneConfig>(),
         Entry::of::<heartbeat::HeartbeatConfig>(),
         Entry::of::<rumor::RumorConfig>(),
-    ]))
-});
+    ]
+}
 
 impl Registry {
     fn of(entries: Vec<Entry>) -> Self {
@@ -77,6 +79,12 @@ pub fn all() -> Vec<Entry> {
 #[must_use]
 pub fn names() -> &'static [&'static str] {
     REGISTRY.read().unwrap_or_else(PoisonError::into_inner).names
+}
+
+/// Whether the kind of that name is one that desim ships, and not one that a program [`add`]ed.
+#[must_use]
+pub fn is_shipped(name: &str) -> bool {
+    shipped().iter().any(|entry| entry.name == name)
 }
 
 /// The kind of that name.

@@ -20,6 +20,41 @@ pub struct Noted {
     pub amount: Amount,
 }
 
+impl Noted {
+    /// What `robot` counted under `name`.
+    #[must_use]
+    pub fn counted(name: &str, robot: ActorId, count: u64) -> Self {
+        Self {
+            name: name.to_owned(),
+            robot,
+            amount: Amount::Count(count.min(MOST)),
+        }
+    }
+
+    /// What `robot` measured under `name`.
+    ///
+    /// # Panics
+    /// If there is no value, or one is not finite.
+    #[must_use]
+    pub fn measured(name: &str, robot: ActorId, values: impl IntoIterator<Item = f64>) -> Self {
+        let values = values.into_iter().map(|value| {
+            assert!(value.is_finite(), "{value} is no measured value");
+            Values::one(value)
+        });
+        let all = values.reduce(Values::and);
+        Self {
+            name: name.to_owned(),
+            robot,
+            amount: Amount::Values(all.expect("a value at least")),
+        }
+    }
+
+    /// Its place among others: by name, then by robot, a count before values.
+    pub(super) fn place(&self) -> (&str, ActorId, bool) {
+        (&self.name, self.robot, matches!(self.amount, Amount::Values(_)))
+    }
+}
+
 /// A count or measured values. Who counts and measures under one name has an entry for each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Amount {
@@ -113,11 +148,17 @@ impl Values {
         self.buckets.iter().map(|(&bucket, &count)| (end_of(bucket), count))
     }
 
-    /// The `q`-quantile, `q` in [0, 1]: the ⌈q·n⌉-th least value, as its bucket tells it, kept within [min, max]. So it is less than 1/128
-    /// off, and exact of whole numbers up to 256.
+    /// The `q`-quantile, `q` in [0, 1]: the ⌈q·n⌉-th least value, the least and the greatest exactly, the others as their
+    /// buckets tell them: less than 1/128 nearer to zero, and exact of whole numbers up to 256.
     #[must_use]
     pub fn quantile(&self, q: f64) -> f64 {
         let rank = ((q * self.count as f64).ceil() as u64).clamp(1, self.count);
+        if rank == self.count {
+            return self.max;
+        }
+        if rank == 1 {
+            return self.min;
+        }
         let mut below = 0;
         let bucket = self.buckets().find(|(_, count)| {
             below += count;

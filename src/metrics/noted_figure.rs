@@ -56,7 +56,8 @@ impl NotedFigure {
         Self::of(key, name, unit, Reading::Mean(measured))
     }
 
-    /// The `q`-quantile, `q` from 0 to 1, of what all robots of a trial measured as `measured`, within 1/128; its mean over trials.
+    /// The `q`-quantile, `q` from 0 to 1, of what all robots of a trial measured as `measured`, less than 1/128 nearer to zero; its
+    /// mean over trials. With a `q` of 0 it is the least, with one of 1 the greatest, both exactly.
     #[must_use]
     pub const fn quantile(
         key: &'static str,

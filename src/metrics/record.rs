@@ -67,6 +67,15 @@ pub struct TrialRecord {
 }
 
 impl TrialRecord {
+    /// Adds what somebody noted, in the place of what that robot noted under the same name, if it did: for what an observer found out, and no robot
+    /// could.
+    pub fn note(&mut self, noted: Noted) {
+        match self.noted.binary_search_by(|known| known.place().cmp(&noted.place())) {
+            Ok(place) => self.noted[place] = noted,
+            Err(place) => self.noted.insert(place, noted),
+        }
+    }
+
     /// The least λ₂ over the samples that find two live robots or more; `None` if none does.
     #[must_use]
     pub fn lambda2_min(&self) -> Option<f64> {

@@ -81,6 +81,26 @@ pub enum Rhythm {
     Probe,
     /// Changes of direction.
     Leg,
+    /// What a protocol of one's own repeats: a number for each such thing.
+    Own(u8),
+}
+
+impl Rhythm {
+    /// Its number among all, of which no two share one.
+    pub(super) const fn number(self) -> u32 {
+        match self {
+            Self::ControlStep => 0,
+            Self::Status => 1,
+            Self::Request => 2,
+            Self::Strand => 3,
+            Self::Relay => 4,
+            Self::StatusRefresh => 5,
+            Self::StrandRefresh => 6,
+            Self::Probe => 7,
+            Self::Leg => 8,
+            Self::Own(own) => 256 + own as u32,
+        }
+    }
 }
 
 /// Where each robot's rhythms begin, in one trial.
@@ -104,7 +124,7 @@ impl Phases {
         let Some(draws) = self.0.filter(|_| interval > 1) else {
             return 0;
         };
-        let [word, _] = draws.first_two(robot.0, rhythm as u32, 0);
+        let [word, _] = draws.first_two(robot.0, rhythm.number(), 0);
         ((u128::from(word) * u128::from(interval)) >> 64) as u64
     }
 

@@ -44,11 +44,12 @@ pub trait Protocol: Sized + 'static {
     type Codec: Encoder<Self::Message, Error = CodecError> + Decoder<Item = Self::Message, Error = CodecError> + Default;
     /// Names of the topics, by which traffic is accounted, at least one; [`topics`](Self::topics) are those in use.
     const TOPICS: &'static [&'static str];
-    /// Names of the roles, by which traffic is accounted, at least one. A robot starts in the first, and [notes](Note::Role) when it
-    /// takes another.
+    /// Names of the roles, by which traffic is accounted, at least one. A robot starts in the first, and says when it
+    /// [enters](Output::enter) another. Faults can choose robots by it: `roles: ["leader"]`.
     const ROLES: &'static [&'static str];
     /// The topic that the robots' failure detector listens to, if they run [one](detector): its frames are followed one by one, so that
-    /// a suspicion can be traced to what became of them, by `desim explain`.
+    /// a suspicion can be traced to what became of them, by `desim explain`. Of this topic, too, the age of information is measured, detector or not,
+    /// where a scenario says `metrics: (pairs: true)`.
     const STATUS: Option<Topic> = None;
     /// The topic of what the robots' failure detector says, the last of them, if robots run one: it is in use where the
     /// scenario's detector sends messages.

@@ -66,6 +66,12 @@ impl<M> Output<M> {
         });
     }
 
+    /// Enters `role`, one of the protocol's [`ROLES`](super::Protocol::ROLES) by its place there: traffic is accounted by it, and faults can
+    /// choose robots by it.
+    pub fn enter(&mut self, role: Role) {
+        self.notes.push(Note::Role(role));
+    }
+
     /// Sets the timer `id`, or moves it: the robot wakes once at `at`, at once if that is past, with
     /// [`Wake::Timer`](super::Wake::Timer).
     pub fn set_timer(&mut self, id: TimerId, at: SimTime) {

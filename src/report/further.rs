@@ -4,7 +4,8 @@ use super::layout::Page;
 use super::number::{estimate, figure};
 use crate::metrics::Summary;
 
-/// A name and a value of each: the estimate with its interval, its unit, what is known of what was cut off.
+/// A name and a value of each: the estimate with its interval, its unit, what is known of what was cut off, and how many trials tell of it, if
+/// not all do.
 pub fn rows(summary: &Summary) -> Vec<(String, String)> {
     let listed = summary.figures.0.iter().map(|(_, listed)| {
         let unit = match &*listed.unit {
@@ -15,7 +16,12 @@ pub fn rows(summary: &Summary) -> Vec<(String, String)> {
             Some(cut_off) => format!(", {cut_off} cut off"),
             None => String::new(),
         };
-        let words = format!("{}{unit}{cut_off}", estimate(&listed.estimate, signed));
+        let few = if listed.estimate.n < summary.trials {
+            format!(", of {} of {} trials", listed.estimate.n, summary.trials)
+        } else {
+            String::new()
+        };
+        let words = format!("{}{unit}{cut_off}{few}", estimate(&listed.estimate, signed));
         (listed.name.clone(), words)
     });
     listed.collect()
@@ -71,6 +77,7 @@ mod tests {
         section(&mut page, &summary);
         assert_eq!(page.text(), "", "where there is none, nothing is said");
 
+        summary.trials = 3;
         summary.figures.0 = vec![
             listed("drift\u{1b}[31m", -2.5, "m", None),
             listed("share", 0.0, "1", None),
@@ -87,5 +94,8 @@ mod tests {
         );
         assert_eq!(lines[3], "  share: 0 [\u{2212}1.00, 1.00]");
         assert_eq!(lines[4], "  wait: 20.0 [19.0, 21.0] s, 4 cut off");
+
+        summary.trials = 20;
+        assert!(rows(&summary)[2].1.ends_with(" s, 4 cut off, of 3 of 20 trials"));
     }
 }

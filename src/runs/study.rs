@@ -35,7 +35,12 @@ pub fn run_study(
 ) -> Result<StudyResults, RunsError> {
     let folder = StudyFolder::new(dir.to_owned());
     let names = run.plan.settings.iter().map(|setting| setting.name.clone()).collect();
-    let mut manifest = StudyManifest::new(described(run), names);
+    let program = run
+        .plan
+        .settings
+        .first()
+        .and_then(|setting| crate::export::program(&setting.scenario));
+    let mut manifest = StudyManifest::new(described(run), names, program);
     let comparison = if let Some(comparison) = finished(&folder, &mut manifest, options.replace)? {
         tell(Happening::There);
         comparison

@@ -180,7 +180,7 @@ impl<P: Protocol> Solo<P> {
     }
 
     /// Lets `seconds` pass, with a control step at their start. Timers that run out on the way wake the robot at their time,
-    /// before a control step. What it did, in order.
+    /// before a control step; those of the very end wake it at the next call, which begins there. What it did, in order.
     pub fn advance(&mut self, seconds: f64) -> Vec<Answer<P::Heard>> {
         let end = self.now + Span::from_secs(seconds);
         let mut done = self.expire(self.now);
@@ -209,12 +209,6 @@ impl<P: Protocol> Solo<P> {
     pub(super) fn next_timer(&self) -> Option<(u8, SimTime)> {
         let all = self.timers.iter().map(|(id, at)| (*id, *at));
         all.min_by_key(|&(id, at)| (at, id))
-    }
-
-    /// Forgets what has arrived and what was to wake it: it was switched off.
-    pub(super) fn clear(&mut self) {
-        self.inbox.clear();
-        self.timers.clear();
     }
 
     /// Goes to `at` without waking.

@@ -94,13 +94,13 @@ impl<P: Protocol> Swarm<P> {
         self.robots[robot.index()].pose.position = Vec2::new(x, y);
     }
 
-    /// Switches a robot off: it takes no step, says and hears nothing.
+    /// Switches a robot off: it takes no step, says and hears nothing. A copy that arrives meanwhile is lost;
+    /// what arrived before is read when it is on again.
     pub fn fail(&mut self, robot: ActorId) {
         self.is_off[robot.index()] = true;
-        self.robots[robot.index()].clear();
     }
 
-    /// Switches it on again; it remembers what it knew.
+    /// Switches it on again, as a run does: it remembers what it knew, and timers that ran out meanwhile wake it at once.
     pub fn recover(&mut self, robot: ActorId) {
         self.is_off[robot.index()] = false;
     }
@@ -129,7 +129,7 @@ impl<P: Protocol> Swarm<P> {
         &self.said
     }
 
-    /// Runs for so many seconds.
+    /// Runs for so many seconds, to the end of the instant at which they are over.
     pub fn run_for(&mut self, seconds: f64) {
         self.run_until(seconds, |_| false);
     }
@@ -228,5 +228,43 @@ impl<P: Protocol> Swarm<P> {
             self.sent += 1;
         }
         self.said.push((now, from, said));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::{Input, Output, Serialised, TimerId, Wake};
+
+    /// Says a number each second, by its timer.
+    struct Clock(u8);
+
+    impl Protocol for Clock {
+        type Message = u8;
+        type Heard = u8;
+        type Codec = Serialised<u8>;
+        const TOPICS: &'static [&'static str] = &["time"];
+        const ROLES: &'static [&'static str] = &["clock"];
+
+        fn step(&mut self, now: SimTime, input: &mut Input<u8>, output: &mut Output<u8>) {
+            if input.wake == Wake::Timer(TimerId(0)) || self.0 == 0 {
+                self.0 += 1;
+                output.broadcast(self.0);
+                output.set_timer(TimerId(0), now + Span::from_secs(1.0));
+            }
+        }
+    }
+
+    #[test]
+    fn who_recovers_wakes_at_once_for_timers_that_ran_out_meanwhile_and_goes_on() {
+        let mut swarm = Swarm::new(vec![Clock(0), Clock(0)]);
+        swarm.run_for(1.5);
+        swarm.fail(ActorId(0));
+        swarm.run_for(3.0);
+        swarm.recover(ActorId(0));
+        swarm.run_for(1.2);
+        let said = swarm.said().iter().filter(|(_, from, _)| *from == ActorId(0));
+        let times: Vec<f64> = said.map(|(at, _, _)| at.as_secs()).collect();
+        assert_eq!(times, [0.0, 1.0, 4.5, 5.5]);
     }
 }

@@ -27,7 +27,7 @@ pub struct PairRecord {
     pub offered: u64,
     /// Copies delivered by the end.
     pub delivered: u64,
-    /// What else is measured of it, in the order of [`MEASURES`]; `None` where there is nothing to tell.
+    /// What else is measured of it, in the order of [`PAIR_MEASURES`](crate::metrics::PAIR_MEASURES); `None` where there is nothing to tell.
     pub values: Vec<Option<f64>>,
 }
 
@@ -45,7 +45,14 @@ pub struct PairMeasure {
     value: fn(&Told) -> Option<f64>,
 }
 
-/// All measures of pairs.
+/// All measures of pairs, in this order:
+///
+/// | key | meaning |
+/// |---|---|
+/// | `delivery_ratio` | copies delivered, of those that arrived or were lost by the end |
+/// | `age_mean_s` | how old the newest status that had arrived was: mean over the time from the first to the end, s |
+/// | `age_peak_s` | how old it was when a newer one arrived: mean, s |
+/// | `age_p95_s` | no older than that for 95 % of the time, s |
 pub static MEASURES: &[PairMeasure] = &[
     PairMeasure {
         key: "delivery_ratio",

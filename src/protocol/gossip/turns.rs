@@ -100,7 +100,7 @@ impl Turns {
         if !self.timing.is_jittered() {
             return 0;
         }
-        let [word, _] = self.jitter.first_two(robot.0, self.rhythm as u32, interval as u32);
+        let [word, _] = self.jitter.first_two(robot.0, self.rhythm.number(), interval as u32);
         ((u128::from(word) * u128::from(self.timing.places)) >> 64) as u64
     }
 }

@@ -7,7 +7,9 @@ use crate::scenario::explain::nearest;
 /// Keys of the figures that every setting has.
 pub fn common(scenarios: &[&Scenario]) -> Vec<String> {
     let of = |scenario: &Scenario| -> Vec<String> {
-        scenario.figures().figures().map(|figure| figure.key.clone()).collect()
+        let figures = scenario.figures();
+        let keys = figures.figures().map(|figure| figure.key.clone());
+        keys.filter(|key| scenario.metrics.pairs || !is_of_pairs(key)).collect()
     };
     let mut known: Option<Vec<String>> = None;
     for scenario in scenarios {
@@ -37,8 +39,16 @@ pub fn usual(scenarios: &[&Scenario]) -> Vec<String> {
     apt.map(|(key, _)| key.to_owned()).collect()
 }
 
+/// Whether a figure is of what passes between two robots, which is kept only where a scenario asks for it.
+fn is_of_pairs(key: &str) -> bool {
+    key.starts_with("pairs.")
+}
+
 /// Says that a figure is not known, and which may be meant.
 pub fn unknown(key: &str, known: &[String]) -> String {
+    if is_of_pairs(key) && !known.iter().any(|key| is_of_pairs(key)) {
+        return format!("`{key}` is there only where all settings say `metrics: (pairs: true)`");
+    }
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let guess = nearest(key, &known).map_or_else(String::new, |name| format!(", did you mean `{name}`?"));
     format!("no figure `{key}` is common to all settings{guess}")

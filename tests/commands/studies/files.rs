@@ -145,6 +145,13 @@ fn a_figure_that_no_setting_has_is_named_with_the_nearest() {
 }
 
 #[test]
+fn a_figure_of_pairs_is_refused_where_no_setting_keeps_them() {
+    let said = shown(&[("\"delivery_ratio\"", "\"pairs.age_mean_s\"")]);
+    let words: Vec<&str> = said.split_whitespace().collect();
+    assert!(words.join(" ").contains("metrics: (pairs: true)"), "{said}");
+}
+
+#[test]
 fn a_base_that_is_not_there_is_named_at_its_field() {
     let said = shown(&[("base.ron", "bass.ron")]);
     assert!(said.contains("bass.ron") && said.contains("study.ron:4"), "{said}");
