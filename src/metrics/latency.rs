@@ -139,13 +139,13 @@ impl LatencyHistogram {
 
 /// The bucket of a latency: its leading digits, after those of all shorter latencies.
 #[inline]
-fn bucket_of(nanos: u64) -> usize {
+pub(super) fn bucket_of(nanos: u64) -> usize {
     let dropped = 63 - DIGITS - (nanos | PER_OCTAVE).leading_zeros();
     ((u64::from(dropped) << DIGITS) + (nanos >> dropped)) as usize
 }
 
 /// The least and the greatest latency of a bucket.
-fn bounds_of(bucket: usize) -> (u64, u64) {
+pub(super) fn bounds_of(bucket: usize) -> (u64, u64) {
     let bucket = bucket as u64;
     let dropped = (bucket >> DIGITS).saturating_sub(1);
     let low = (bucket - (dropped << DIGITS)) << dropped;

@@ -1,8 +1,8 @@
 //! Age of information (Kaul, Yates and Gruteser, 2012): how old the newest status that a robot has of another is, from the first that arrived
-//! until the end of the run, also while the two are out of range or down. An arrival brings it down to that status's own age.
+//! to the last: that the two have parted since, or one has failed, other figures tell. An arrival brings it down to that status's own age.
 
 use crate::engine::{SimTime, Span};
-use crate::metrics::noted::Values;
+use crate::metrics::latency::{bounds_of, bucket_of};
 
 /// The age of one robot's information on another.
 #[derive(Debug)]
@@ -18,14 +18,14 @@ pub(super) struct Age {
     peaks: u64,
     /// Sum of the ages from which it fell, nanoseconds.
     peak_sum: u128,
-    /// The ages to which it fell, and those up to which it grew then, seconds: between the two it passes every age at the same pace.
-    from: Values,
-    to: Option<Values>,
+    /// The ages to which it fell before it grew, and those up to which it grew then: between the two it passes every age at the same pace.
+    from: Ages,
+    to: Ages,
 }
 
-/// What is told of it at the end, in seconds.
+/// What is told of it at the end, in seconds; nothing of a single status.
 #[derive(Debug, Default)]
-pub(super) struct Ages {
+pub(super) struct Told {
     /// Mean over time.
     pub mean: Option<f64>,
     /// Mean of the ages from which it fell.
@@ -44,8 +44,8 @@ impl Age {
             known: 0,
             peaks: 0,
             peak_sum: 0,
-            from: Values::one(at.since(sent).as_secs()),
-            to: None,
+            from: Ages::default(),
+            to: Ages::default(),
         }
     }
 
@@ -54,49 +54,57 @@ impl Age {
         if sent <= self.newest {
             return;
         }
-        let peak = self.grow(at);
-        self.peaks += 1;
-        self.peak_sum += u128::from(peak.as_nanos());
-        self.newest = sent;
-        self.fell = at;
-        self.from.add(at.since(sent).as_secs());
-    }
-
-    /// Counts how it has grown since it fell, and answers how old it is at `now`.
-    fn grow(&mut self, now: SimTime) -> Span {
-        let [low, high] = [self.fell, now].map(|at| at.since(self.newest));
+        let [low, high] = [self.fell, at].map(|at| at.since(self.newest));
         let [a, b] = [low, high].map(|age| u128::from(age.as_nanos()));
         self.twice_area += b * b - a * a;
         self.known += b - a;
-        let high_s = high.as_secs();
-        match &mut self.to {
-            Some(to) => to.add(high_s),
-            none => *none = Some(Values::one(high_s)),
-        }
-        high
+        self.peaks += 1;
+        self.peak_sum += b;
+        self.from.add(low);
+        self.to.add(high);
+        (self.newest, self.fell) = (sent, at);
     }
 
     /// What is to be told of it at the end of the run.
-    pub(super) fn told(mut self, end: SimTime) -> Ages {
-        self.grow(end);
+    pub(super) fn told(&self) -> Told {
         let seconds = |nanos: f64| nanos / 1e9;
-        Ages {
+        Told {
             mean: (self.known > 0).then(|| seconds(self.twice_area as f64 / 2.0 / self.known as f64)),
             peak: (self.peaks > 0).then(|| seconds(self.peak_sum as f64 / self.peaks as f64)),
-            p95: self.to.and_then(|to| quantile(&self.from, &to, 0.95)),
+            p95: quantile(&self.from, &self.to, 0.95).map(seconds),
         }
     }
 }
 
-/// The age that is not exceeded for a share `q` of the time, where it grew from each of `from` to each of `to`. The time spent below an age x
-/// is ∑ (x − a)⁺ over the former less ∑ (x − b)⁺ over the latter.
-fn quantile(from: &Values, to: &Values, q: f64) -> Option<f64> {
-    let turns = |values: &Values, pace: f64| {
-        let (min, max) = (values.min, values.max);
-        let turn = move |(age, count): (f64, u64)| (middle(age).clamp(min, max), pace * count as f64);
-        values.buckets().map(turn).collect::<Vec<_>>()
-    };
-    let mut turns = [turns(from, 1.0), turns(to, -1.0)].concat();
+/// How many ages there are in each bucket of fixed relative width that has some, in order. There are few, so that a search among neighbours
+/// in memory is quick.
+#[derive(Debug, Default)]
+struct Ages(Vec<(u16, u32)>);
+
+impl Ages {
+    fn add(&mut self, age: Span) {
+        let bucket = bucket_of(age.as_nanos()) as u16;
+        match self.0.binary_search_by_key(&bucket, |(known, _)| *known) {
+            Ok(place) => self.0[place].1 += 1,
+            Err(place) => self.0.insert(place, (bucket, 1)),
+        }
+    }
+
+    /// The middle of each bucket, nanoseconds, and how many ages it holds.
+    fn iter(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.0.iter().map(|&(bucket, count)| {
+            let (low, high) = bounds_of(usize::from(bucket));
+            (f64::midpoint(low as f64, high as f64), f64::from(count))
+        })
+    }
+}
+
+/// The age that is not exceeded for a share `q` of the time, where it grew from each of `from` to each of `to`, nanoseconds. The time spent
+/// below an age x is ∑ (x − a)⁺ over the former less ∑ (x − b)⁺ over the latter.
+fn quantile(from: &Ages, to: &Ages, q: f64) -> Option<f64> {
+    let starts = from.iter();
+    let ends = to.iter().map(|(age, count)| (age, -count));
+    let mut turns: Vec<(f64, f64)> = starts.chain(ends).collect();
     turns.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = turns.iter().map(|(age, pace)| -age * pace).sum();
     if total <= 0.0 {
@@ -113,11 +121,6 @@ fn quantile(from: &Values, to: &Values, q: f64) -> Option<f64> {
     Some(reached)
 }
 
-/// The middle of a bucket whose end nearer to zero is this.
-fn middle(end: f64) -> f64 {
-    end * (1.0 + 1.0 / 256.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,8 +134,9 @@ mod tests {
         let mut age = Age::since(at(0.0), at(1.0));
         age.arrived(at(4.0), at(6.0));
         age.arrived(at(3.0), at(7.0));
+        age.arrived(at(9.0), at(10.0));
         // 1 s to 6 s in five seconds, then 2 s to 6 s in four.
-        let told = age.told(at(10.0));
+        let told = age.told();
         assert_eq!((told.mean, told.peak), (Some((17.5 + 16.0) / 9.0), Some(6.0)));
         // Of the nine seconds 0.45 are spent above it, at a pace of two ages a second.
         let p95 = told.p95.unwrap();
@@ -140,11 +144,12 @@ mod tests {
     }
 
     #[test]
-    fn a_single_status_ages_until_the_end_and_has_no_peak() {
-        let told = Age::since(at(2.0), at(2.5)).told(at(12.5));
-        assert_eq!((told.mean, told.peak), (Some(5.5), None));
-        assert!((told.p95.unwrap() - 10.0).abs() < 0.08);
-        let none = Age::since(at(2.0), at(2.5)).told(at(2.5));
+    fn a_single_status_tells_nothing_and_what_comes_after_the_last_does_not_count() {
+        let mut age = Age::since(at(2.0), at(2.5));
+        let none = age.told();
         assert_eq!((none.mean, none.peak, none.p95), (None, None, None));
+        age.arrived(at(3.0), at(3.5));
+        let told = age.told();
+        assert_eq!((told.mean, told.peak), (Some(1.0), Some(1.5)));
     }
 }

@@ -14,7 +14,7 @@ use crate::protocol::Topic;
 
 use super::figures::Better;
 use super::unit::{DIMENSIONLESS, SECONDS};
-use age::{Age, Ages};
+use age::{Age, Told as AgeTold};
 
 /// What passed from one robot to another in a trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,7 +50,7 @@ pub struct PairMeasure {
 /// | key | meaning |
 /// |---|---|
 /// | `delivery_ratio` | copies delivered, of those that arrived or were lost by the end |
-/// | `age_mean_s` | how old the newest status that had arrived was: mean over the time from the first to the end, s |
+/// | `age_mean_s` | how old the newest status that had arrived was: mean over the time from the first to the last, s |
 /// | `age_peak_s` | how old it was when a newer one arrived: mean, s |
 /// | `age_p95_s` | no older than that for 95 % of the time, s |
 pub static MEASURES: &[PairMeasure] = &[
@@ -98,7 +98,7 @@ struct Pair {
 /// A pair at the end.
 struct Told {
     pair: Pair,
-    ages: Ages,
+    ages: AgeTold,
 }
 
 impl Pair {
@@ -174,16 +174,16 @@ impl Pairs {
         &mut heard[place].1
     }
 
-    /// The pairs, by sender and receiver, of a run that ended at `end`.
-    pub(super) fn into_records(mut self, end: SimTime) -> Vec<PairRecord> {
+    /// The pairs, by sender and receiver.
+    pub(super) fn into_records(mut self) -> Vec<PairRecord> {
         let mut unread = std::mem::take(&mut self.unread);
         unread.sort_by_key(|(at, _)| *at);
         for (at, copy) in &unread {
             self.refresh(copy, *at);
         }
         let receivers = (0..).map(ActorId).zip(self.heard);
-        let record = move |receiver: ActorId, sender: ActorId, mut pair: Pair| {
-            let ages = pair.age.take().map_or_else(Ages::default, |age| age.told(end));
+        let record = move |receiver: ActorId, sender: ActorId, pair: Pair| {
+            let ages = pair.age.as_ref().map(Age::told).unwrap_or_default();
             let told = Told { pair, ages };
             PairRecord {
                 sender,

@@ -351,9 +351,7 @@ impl Recorder {
             healing: self.healing.into_episodes(),
             spread: self.spread.into_records(),
             noted: self.notes.into_records(),
-            pairs: self
-                .pairs
-                .map_or_else(Vec::new, |pairs| pairs.into_records(end.simulated)),
+            pairs: self.pairs.map_or_else(Vec::new, Pairs::into_records),
             connectivity: self.connectivity,
             series: self.series.into_entries(),
             robots: robots(self.reports, end.poses, &end.robot_steps),
