@@ -98,7 +98,7 @@ impl Start<'_> {
     /// }
     /// #
     /// # desim::kinds::add::<Talk>();
-    /// # let scenario = parse("t.ron", "Scenario(name: \"t\", swarm: (robots: 2), protocol: Talk, control: (phase: Together), time_limit: 9.0)", &[]).unwrap();
+    /// # let scenario = parse("t.ron", "Scenario(name: \"t\", swarm: (robots: 2, deploy: Uniform), protocol: Talk, control: (phase: Together), time_limit: 9.0)", &[]).unwrap();
     /// # let record = run_trial(&scenario, 0, DriverKind::Inline, &Default::default()).unwrap();
     /// # let figures = scenario.figures();
     /// # let seen = figures.figures().zip(figures.read(&record)).find(|(figure, _)| figure.key == "noted.last_word_s");
