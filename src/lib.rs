@@ -235,6 +235,7 @@
 //! | make a world by hand, and watch it | [`simulation`], [`happenings`]; of the models [`radio`], [`motion`], [`faults`] |
 //! | know what closed forms expect | [`predict`] |
 //! | lay out text | [`text`] |
+//! | keep lists that may outgrow memory | [`spool`] |
 //!
 //! More protocols to read, each a file: `examples/flood` (questions through many hops), `examples/flock` (robots that move by what they
 //! hear), `examples/leader` (a failure detector, and why it erred). `ARCHITECTURE.md` walks the paths through the modules.

@@ -102,6 +102,14 @@ struct Told {
 }
 
 impl Pair {
+    /// A status arrived at `at`.
+    fn refresh(&mut self, status: &Copy, at: SimTime) {
+        match &mut self.age {
+            Some(age) => age.arrived(status.sent_at, at),
+            none => *none = Some(Age::since(status.sent_at, at)),
+        }
+    }
+
     /// The share of the copies that arrived of those whose fate is known.
     fn delivery_ratio(&self) -> Option<f64> {
         let settled = self.delivered + self.lost;
@@ -109,11 +117,18 @@ impl Pair {
     }
 }
 
+/// Whom a robot was to hear, in order of their ids, and what came of it. Apart, the ids are searched in little memory.
+#[derive(Debug, Default)]
+struct Heard {
+    senders: Vec<ActorId>,
+    pairs: Vec<Pair>,
+}
+
 /// The pairs of a run. It is told of copies by value, and rarely: by reference every copy of every run would have to be in memory for it.
 #[derive(Debug)]
 pub(super) struct Pairs {
-    /// By receiver: whom it was to hear, in order of their ids, and what came of it.
-    heard: Vec<Vec<(ActorId, Pair)>>,
+    /// By receiver.
+    heard: Vec<Heard>,
     /// The topic of statuses.
     status: Option<Topic>,
     /// Statuses that nobody read before the end, with their arrivals, which are told in no order.
@@ -124,7 +139,7 @@ impl Pairs {
     /// Of robots that have heard nothing, and send statuses on the topic `status` if they do.
     pub(super) fn new(robots: usize, status: Option<Topic>) -> Self {
         Self {
-            heard: std::iter::repeat_with(Vec::new).take(robots).collect(),
+            heard: std::iter::repeat_with(Heard::default).take(robots).collect(),
             status,
             unread: Vec::new(),
         }
@@ -133,22 +148,13 @@ impl Pairs {
     /// A copy arrived at `at`, and was read if it `is_read`: then in order of arrivals.
     #[cold]
     pub(super) fn delivered(&mut self, copy: Copy, at: SimTime, is_read: bool) {
-        self.pair(&copy).delivered += 1;
-        if self.status != Some(copy.topic) {
-            return;
-        }
-        if is_read {
-            self.refresh(&copy, at);
-        } else {
+        let is_status = self.status == Some(copy.topic);
+        let pair = self.pair(&copy);
+        pair.delivered += 1;
+        if is_status && is_read {
+            pair.refresh(&copy, at);
+        } else if is_status {
             self.unread.push((at, copy));
-        }
-    }
-
-    fn refresh(&mut self, status: &Copy, at: SimTime) {
-        let age = &mut self.pair(status).age;
-        match age {
-            Some(age) => age.arrived(status.sent_at, at),
-            none => *none = Some(Age::since(status.sent_at, at)),
         }
     }
 
@@ -165,13 +171,13 @@ impl Pairs {
     }
 
     fn pair(&mut self, copy: &Copy) -> &mut Pair {
-        let heard = &mut self.heard[copy.receiver.index()];
-        let place = heard.binary_search_by_key(&copy.sender, |(sender, _)| *sender);
-        let place = place.unwrap_or_else(|place| {
-            heard.insert(place, (copy.sender, Pair::default()));
+        let Heard { senders, pairs } = &mut self.heard[copy.receiver.index()];
+        let place = senders.binary_search(&copy.sender).unwrap_or_else(|place| {
+            senders.insert(place, copy.sender);
+            pairs.insert(place, Pair::default());
             place
         });
-        &mut heard[place].1
+        &mut pairs[place]
     }
 
     /// The pairs, by sender and receiver.
@@ -179,7 +185,7 @@ impl Pairs {
         let mut unread = std::mem::take(&mut self.unread);
         unread.sort_by_key(|(at, _)| *at);
         for (at, copy) in &unread {
-            self.refresh(copy, *at);
+            self.pair(copy).refresh(copy, *at);
         }
         let receivers = (0..).map(ActorId).zip(self.heard);
         let record = move |receiver: ActorId, sender: ActorId, pair: Pair| {
@@ -195,7 +201,7 @@ impl Pairs {
         };
         let mut records: Vec<PairRecord> = receivers
             .flat_map(|(receiver, heard)| {
-                let heard = heard.into_iter();
+                let heard = heard.senders.into_iter().zip(heard.pairs);
                 heard.map(move |(sender, pair)| record(receiver, sender, pair))
             })
             .collect();
