@@ -54,7 +54,8 @@ impl Sorted {
         let signed = &mut times.0;
         signed.sort_unstable_by(|a, b| a.abs().total_cmp(&b.abs()).then(a.total_cmp(b)));
         let len = signed.len();
-        let mut counts: Vec<u32> = Vec::new();
+        // A list that grew would be in memory twice for a while.
+        let mut counts: Vec<u32> = Vec::with_capacity(len);
         signed.dedup_by(|next, kept| {
             let is_same = next.total_cmp(kept).is_eq();
             match counts.last_mut() {
