@@ -196,6 +196,9 @@ fn read(mut file: File) -> io::Result<FinishedTrial> {
     } = serde_json::from_slice::<Head<FinishedTrial>>(&line)?;
     let mut lists = Lists::default();
     let mut section = Section::of(file, line.len() as u64);
+    if shapes.len() != lists.all().len() {
+        return Err(io::Error::other("it holds other lists than a trial has"));
+    }
     for (list, shape) in lists.all().into_iter().zip(shapes) {
         list.restore(shape, section.clone())?;
         section = section.after(shape.bytes());

@@ -35,11 +35,10 @@ pub fn run_study(
 ) -> Result<StudyResults, RunsError> {
     let folder = StudyFolder::new(dir.to_owned());
     let names = run.plan.settings.iter().map(|setting| setting.name.clone()).collect();
-    let program = run
-        .plan
-        .settings
-        .first()
-        .and_then(|setting| crate::export::program(&setting.scenario));
+    let settings = run.plan.settings.iter();
+    let program = settings
+        .map(|setting| &setting.scenario)
+        .find_map(crate::export::program);
     let mut manifest = StudyManifest::new(described(run), names, program);
     let comparison = if let Some(comparison) = finished(&folder, &mut manifest, options.replace)? {
         tell(Happening::There);

@@ -94,7 +94,9 @@ impl Pair {
     /// The failure ends at `now`: it was detected if the subject is suspected, else the `outcome` is another.
     pub fn resolve(&mut self, now: SimTime, outcome: FailureOutcome, tally: &mut Tally) {
         if let Some(failure) = self.failure.take() {
-            let suspicion = self.suspicion.map(|place| change(&mut tally.suspicions, place, |_| ()));
+            let suspicion = self
+                .suspicion
+                .and_then(|place| tally.suspicions.get(place.get() as usize - 1));
             change(&mut tally.failures, failure, |failure| {
                 let detected = suspicion.map(|suspicion| suspicion.at.since(failure.at));
                 failure.outcome = detected.map_or(outcome, FailureOutcome::Detected);

@@ -35,7 +35,7 @@ pub(super) fn declare(registry: &mut Registry) {
 }
 
 /// The suspicions of a trial that were mistakes.
-pub(in crate::metrics) fn mistakes(trial: &DetectionRecord) -> impl Iterator<Item = Suspicion> {
+fn mistakes(trial: &DetectionRecord) -> impl Iterator<Item = Suspicion> {
     trial
         .suspicions
         .iter()

@@ -39,7 +39,7 @@ const LISTED: f64 = 100.0;
 const TRIAL: f64 = 80_000.0;
 const KEPT: f64 = 0.3;
 /// Of what passed between two robots.
-const BETWEEN: f64 = 6000.0;
+const BETWEEN: f64 = 6500.0;
 
 /// What a scenario asks of a machine.
 struct Needs {
@@ -299,6 +299,12 @@ mod tests {
                     "time_limit: 2000.0, swarm: (robots: 300, deploy: Uniform), arena: (size: (30.0, 30.0)), wander: RandomWaypoint(speed: 0.3), motion: (max_speed: 0.3), gossip: (status: (interval: 1.0)), protocol: {alone}, detector: Timeout(3.0), {unsampled}"
                 ),
                 108.0,
+            ),
+            (
+                format!(
+                    "time_limit: 60.0, swarm: (robots: 300, deploy: Uniform), {still}, radio: (loss: Bernoulli(0.2), latency: Normal(mean: 0.02, std_dev: 0.01, min: 0.001)), metrics: (sample_interval: 0.0, pairs: true)"
+                ),
+                179.0,
             ),
         ] {
             let needs = needs(&sections);
