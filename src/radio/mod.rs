@@ -25,12 +25,16 @@ mod latency;
 mod law;
 mod loss;
 mod medium;
+mod modulation;
 mod sensing;
+pub mod technology;
 
 pub use config::{LatencyConfig, LossConfig, RadioConfig, SensingConfig};
 pub use disk::Disk;
 pub use law::{LossChain, LossRun};
 pub use medium::{Fate, Fates, FrameId, Listener, Medium, RadioKind, Transmission};
+pub use modulation::Modulation;
+pub use technology::{Phy, Section, TechnologyConfig, Waveform};
 
 pub(crate) use medium::Arrival;
 
