@@ -88,7 +88,7 @@ pub(super) struct Traffic {
     received: Ledger,
     /// Takes no room before the first.
     duplicate: Ledger,
-    /// A table for each cause, in the order of their numbers. That of what was sent to one out of range takes no room before the first.
+    /// A table for each cause, in the order of their numbers. Those of causes that the disk radio hardly has take no room before the first.
     lost: [Ledger; LossCause::ALL.len()],
     /// Where the cells of each robot's present role begin in these tables.
     starts: Vec<u32>,
@@ -106,8 +106,8 @@ impl Traffic {
             received: Ledger::new(cells),
             duplicate: Ledger::default(),
             lost: LossCause::ALL.map(|cause| match cause {
-                LossCause::BelowSensitivity => Ledger::default(),
-                _ => Ledger::new(cells),
+                LossCause::Channel | LossCause::LinkFault | LossCause::ReceiverDown => Ledger::new(cells),
+                _ => Ledger::default(),
             }),
             starts: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
         }
@@ -167,7 +167,7 @@ impl Traffic {
     #[inline]
     pub(super) fn lost(&mut self, robot: ActorId, topic: Topic, cause: LossCause, size: MessageSize) {
         let cell = self.cell(robot, topic);
-        if cause == LossCause::BelowSensitivity {
+        if cause > LossCause::ReceiverDown {
             let cells = self.sent.counts.len();
             self.lost[cause as usize].counts.resize(cells, Count::default());
         }

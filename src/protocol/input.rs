@@ -6,6 +6,7 @@ use super::names::{MessageSize, TimerId, Topic};
 use super::output::Note;
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::{Pose, Vec2};
+use crate::radio::Outcome;
 
 /// What a robot is told before the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +26,8 @@ pub enum Wake {
     Timer(TimerId),
     /// A frame arrived, in scenarios that wake robots so.
     Reception,
+    /// The radio is done with something that it said, if it [heeds](super::Protocol::HEEDS_OUTCOMES) that.
+    Sent,
 }
 
 /// What a robot is told when it wakes. `M` is [`Protocol::Heard`](super::Protocol::Heard).
@@ -48,6 +51,9 @@ pub struct Input<M> {
     pub wake: Wake,
     /// The frames that arrived since it last woke, in order of arrival.
     pub inbox: Vec<Reception<M>>,
+    /// What became of frames of its own since it last woke, in order of time; empty unless its protocol
+    /// [heeds](super::Protocol::HEEDS_OUTCOMES) that.
+    pub outcomes: Vec<Concluded>,
     /// Where it is and which way it faces: metres from the arena's centre, radians.
     pub pose: Pose,
     /// Near bodies at a control step (robots, walls, obstacles, within the proximity range): the vector from this
@@ -56,6 +62,17 @@ pub struct Input<M> {
     /// Randomness for this wake alone, whatever was drawn before: the draws of a robot's n-th wake are the same in each run of a trial. The
     /// traits of the crate `rand` draw from it.
     pub random: Philox,
+}
+
+/// A frame of its own that its radio is done with, as a robot learns of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Concluded {
+    /// The number of its first message among those that the robot has sent, from 0; `None` if its radio could not send at all, and no number was taken.
+    pub sequence: Option<u32>,
+    /// How many messages were in it.
+    pub messages: u32,
+    /// How it ended.
+    pub outcome: Outcome,
 }
 
 /// A message as its receivers get it: decoded once, for its bytes are the same at every receiver, and then copied into each

@@ -25,7 +25,7 @@ pub mod wander;
 
 pub use codec::{CodecError, Serialised};
 pub use completion::CompletionConfig;
-pub use input::{Address, Frame, Input, Reception, Start, Wake};
+pub use input::{Address, Concluded, Frame, Input, Reception, Start, Wake};
 pub use names::{MessageSize, Role, TimerId, Topic};
 pub use output::{Directed, Evidence, Note, Output};
 
@@ -59,6 +59,10 @@ pub trait Protocol: Sized + 'static {
     /// Whether a robot also hears what is [sent](Output::send) to another within its range. If so it is offered a copy as of a
     /// broadcast, and [`Frame::address`] says whom it is for; if not, its radio drops the frame and nothing is counted.
     const OVERHEARS: bool = false;
+
+    /// Whether a robot learns what became of its frames at its own end ([`Input::outcomes`]): that they are through, acknowledged, or were given up. It is
+    /// [woken](Wake::Sent) for that.
+    const HEEDS_OUTCOMES: bool = false;
 
     /// Names of the topics in use where robots run `detector`.
     #[must_use]

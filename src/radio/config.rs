@@ -1,325 +1,222 @@
-//! What a scenario says about the radio.
+//! What a scenario says about the radio: a disk, or a technology on a shared medium.
+//!
+//! Which of the two it is follows from the fields: a radio with a `technology` is shared. Both are written `radio: (...)`, and a shared one
+//! may be called by its name, `radio: Shared(...)`.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-use statrs::distribution::{Continuous, ContinuousCDF, Normal};
+use std::borrow::Cow;
 
-use crate::quantity::{NonNegative, Positive, Probability};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::Value;
 
-/// The radio: range, channel, and what a frame carries beside its payload.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct RadioConfig {
-    /// Communication range C in metres: a robot hears transmissions from at most this far (paper table 1: 2 m).
-    pub range: Positive,
-    /// Which frames the channel drops.
-    pub loss: LossConfig,
-    /// How long a frame takes from transmission to arrival, drawn for each reception on its own.
-    pub latency: LatencyConfig,
-    /// Bytes that every frame carries once, whatever is in it. 2: its sender.
-    pub frame_header_bytes: u16,
-    /// Bytes that every message in a frame carries beside its payload. 3: its topic and its length.
-    pub message_header_bytes: u16,
-    /// Noise of the receiver's sense of where a sender is.
-    pub sensing: SensingConfig,
+use super::disk_config::{DiskConfig, LatencyConfig, LossConfig, SensingConfig, WallsConfig};
+use super::propagation::{FadingConfig, PathLossConfig, ShadowingConfig};
+use super::shared::{AccessConfig, CaptureConfig, NoiseConfig, SharedConfig};
+use super::technology::TechnologyConfig;
+use crate::quantity::{Finite, NonNegative, Positive};
+
+/// The radio of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RadioConfig {
+    /// Whoever is near enough hears, but for what a channel drops; frames take no time on air.
+    Disk(DiskConfig),
+    /// Frames take time on air, and everybody is on the same air.
+    Shared(Box<SharedConfig>),
 }
 
 impl Default for RadioConfig {
     fn default() -> Self {
-        Self {
-            range: Positive::new(2.0),
-            loss: LossConfig::None,
-            latency: LatencyConfig::Constant(NonNegative::new(0.1)),
-            frame_header_bytes: 2,
-            message_header_bytes: 3,
-            sensing: SensingConfig::default(),
-        }
+        Self::Disk(DiskConfig::default())
+    }
+}
+
+impl From<DiskConfig> for RadioConfig {
+    fn from(config: DiskConfig) -> Self {
+        Self::Disk(config)
+    }
+}
+
+impl From<SharedConfig> for RadioConfig {
+    fn from(config: SharedConfig) -> Self {
+        Self::Shared(Box::new(config))
     }
 }
 
 impl RadioConfig {
-    /// What is wrong between fields that are each in range: the path of the field at fault, from this section on, and
+    /// The disk radio; or the one that is most like a shared radio, for estimates and for what must be said before a run: its range is that of a lone
+    /// frame without shadowing and walls, nothing is lost within it, and a frame takes as long as it is on air and medium access takes at least.
+    #[must_use]
+    pub fn disk(&self) -> Cow<'_, DiskConfig> {
+        match self {
+            Self::Disk(config) => Cow::Borrowed(config),
+            Self::Shared(config) => Cow::Owned(config.like_disk()),
+        }
+    }
+
+    /// The shared radio, if it is one.
+    #[must_use]
+    pub fn shared(&self) -> Option<&SharedConfig> {
+        match self {
+            Self::Disk(_) => None,
+            Self::Shared(config) => Some(config),
+        }
+    }
+
+    /// Whether frames take time on air.
+    #[must_use]
+    pub fn takes_time(&self) -> bool {
+        self.shared().is_some_and(SharedConfig::takes_time)
+    }
+
+    /// What is wrong between fields that are each in range, for a swarm of so many robots: the path of the field at fault, from this section on, and
     /// what is wrong with it and would be right. Empty if the radio can be built.
     #[must_use]
-    pub fn problems(&self) -> Vec<(String, String)> {
-        let loss = self.loss.problem().map(|message| ("loss".to_owned(), message));
-        let latency = self.latency.problem().map(|message| ("latency".to_owned(), message));
-        loss.into_iter().chain(latency).collect()
+    pub fn problems(&self, robots: u32) -> Vec<(String, String)> {
+        match self {
+            Self::Disk(config) => config.problems(),
+            Self::Shared(config) => config.problems(robots),
+        }
     }
 }
 
-/// Loss of frames in the channel, for each receiver on its own.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub enum LossConfig {
-    /// Every frame arrives.
-    None,
-    /// Each frame is lost with this probability, independently.
-    Bernoulli(Probability),
-    /// Bursts: each ordered pair of robots is a two-state chain, good or bad, that steps once at every frame of the
-    /// sender, whether or not the receiver is in range to hear it. It starts from its stationary distribution.
-    GilbertElliott {
-        /// Probability of going from good to bad at a frame. Not 0 together with `bad_to_good`.
-        good_to_bad: Probability,
-        /// Probability of going from bad to good at a frame; the mean burst is its inverse.
-        bad_to_good: Probability,
-        /// Loss probability in the good state.
-        #[serde(default = "never")]
-        good_loss: Probability,
-        /// Loss probability in the bad state, at least `good_loss`.
-        #[serde(default = "always")]
-        bad_loss: Probability,
-    },
-    /// Loss grows with distance d as `at_range` · (d / range)^`exponent`.
-    Distance {
-        /// Loss probability at the edge of the range.
-        at_range: Probability,
-        /// How sharply loss sets in towards the edge.
-        exponent: Positive,
-    },
+/// The fields of both.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields, default, rename = "Shared")]
+struct Fields {
+    technology: Option<TechnologyConfig>,
+    access: Option<AccessConfig>,
+    transmit_power: Option<Finite>,
+    transmit_power_spread: Option<NonNegative>,
+    antenna_gain: Option<Finite>,
+    antenna_gain_spread: Option<NonNegative>,
+    path_loss: Option<PathLossConfig>,
+    shadowing: Option<ShadowingConfig>,
+    fading: Option<FadingConfig>,
+    walls: Option<WallsConfig>,
+    capture: CaptureConfig,
+    queue: Option<u32>,
+    noise: Option<Vec<NoiseConfig>>,
+    negligible: Option<NonNegative>,
+    range_payload: Option<u16>,
+    range: Option<Positive>,
+    loss: Option<LossConfig>,
+    latency: Option<LatencyConfig>,
+    frame_header_bytes: Option<u16>,
+    message_header_bytes: Option<u16>,
+    sensing: Option<SensingConfig>,
 }
 
-impl LossConfig {
-    /// The share of frames that are lost in the long run between robots at `distance` metres of each other, where the
-    /// communication range is `range` metres.
-    #[must_use]
-    pub fn mean_loss(&self, distance: f64, range: f64) -> f64 {
-        match *self {
-            Self::None => 0.0,
-            Self::Bernoulli(probability) => probability.get(),
-            Self::GilbertElliott {
-                good_to_bad,
-                bad_to_good,
-                good_loss,
-                bad_loss,
-            } => {
-                let bad_share = good_to_bad.get() / (good_to_bad.get() + bad_to_good.get());
-                (1.0 - bad_share) * good_loss.get() + bad_share * bad_loss.get()
-            }
-            Self::Distance { at_range, exponent } => at_range.get() * (distance / range).powf(exponent.get()),
+impl Fields {
+    /// Those of the present fields that only the other radio has.
+    fn strangers(&self) -> Vec<&'static str> {
+        let disk = [
+            ("range", self.range.is_some()),
+            ("loss", self.loss.is_some()),
+            ("latency", self.latency.is_some()),
+            ("frame_header_bytes", self.frame_header_bytes.is_some()),
+        ];
+        let shared = [
+            ("access", self.access.is_some()),
+            ("transmit_power", self.transmit_power.is_some()),
+            ("transmit_power_spread", self.transmit_power_spread.is_some()),
+            ("antenna_gain", self.antenna_gain.is_some()),
+            ("antenna_gain_spread", self.antenna_gain_spread.is_some()),
+            ("path_loss", self.path_loss.is_some()),
+            ("shadowing", self.shadowing.is_some()),
+            ("fading", self.fading.is_some()),
+            ("capture", !self.capture.is_own()),
+            ("queue", self.queue.is_some()),
+            ("noise", self.noise.is_some()),
+            ("negligible", self.negligible.is_some()),
+            ("range_payload", self.range_payload.is_some()),
+        ];
+        let strange: &[_] = if self.technology.is_some() { &disk } else { &shared };
+        strange.iter().filter(|field| field.1).map(|field| field.0).collect()
+    }
+
+    fn shared(self, technology: TechnologyConfig) -> SharedConfig {
+        let own = SharedConfig::of(technology);
+        SharedConfig {
+            access: self.access,
+            transmit_power: self.transmit_power,
+            transmit_power_spread: self.transmit_power_spread.unwrap_or(own.transmit_power_spread),
+            antenna_gain: self.antenna_gain.unwrap_or(own.antenna_gain),
+            antenna_gain_spread: self.antenna_gain_spread.unwrap_or(own.antenna_gain_spread),
+            path_loss: self.path_loss.unwrap_or(own.path_loss),
+            shadowing: self.shadowing,
+            fading: self.fading.unwrap_or(own.fading),
+            walls: self.walls.unwrap_or(own.walls),
+            capture: self.capture,
+            queue: self.queue.unwrap_or(own.queue),
+            noise: self.noise.unwrap_or(own.noise),
+            negligible: self.negligible.unwrap_or(own.negligible),
+            message_header_bytes: self.message_header_bytes,
+            range_payload: self.range_payload.unwrap_or(own.range_payload),
+            sensing: self.sensing.unwrap_or(own.sensing),
+            technology: own.technology,
         }
     }
 
-    fn problem(&self) -> Option<String> {
-        let Self::GilbertElliott {
-            good_to_bad,
-            bad_to_good,
-            good_loss,
-            bad_loss,
-        } = self
-        else {
-            return None;
-        };
-        if good_to_bad.get() + bad_to_good.get() == 0.0 {
-            return Some(
-                "GilbertElliott never changes state: good_to_bad and bad_to_good are both 0; \
-                 set one of them above 0, or use Bernoulli for independent losses"
-                    .into(),
-            );
+    fn disk(self) -> DiskConfig {
+        let own = DiskConfig::default();
+        DiskConfig {
+            range: self.range.unwrap_or(own.range),
+            loss: self.loss.unwrap_or(own.loss),
+            latency: self.latency.unwrap_or(own.latency),
+            frame_header_bytes: self.frame_header_bytes.unwrap_or(own.frame_header_bytes),
+            message_header_bytes: self.message_header_bytes.unwrap_or(own.message_header_bytes),
+            sensing: self.sensing.unwrap_or(own.sensing),
+            walls: self.walls.unwrap_or(own.walls),
         }
-        (good_loss > bad_loss).then(|| {
-            let (good, bad) = (good_loss.get(), bad_loss.get());
-            format!("GilbertElliott loses more in its good state (good_loss {good}) than in its bad one (bad_loss {bad}); exchange them")
+    }
+}
+
+impl<'de> Deserialize<'de> for RadioConfig {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut fields = Fields::deserialize(deserializer)?;
+        if let Some(field) = fields.strangers().first() {
+            let message = if fields.technology.is_some() {
+                format!("`{field}` is for the disk radio, and this one has a `technology`: leave out one of them")
+            } else {
+                format!("`{field}` is for a radio with a `technology`, such as Ieee802154(): add one, or leave it out")
+            };
+            return Err(serde::de::Error::custom(message));
+        }
+        Ok(match fields.technology.take() {
+            Some(technology) => fields.shared(technology).into(),
+            None => fields.disk().into(),
         })
     }
 }
 
-fn never() -> Probability {
-    Probability::new(0.0)
-}
-
-fn always() -> Probability {
-    Probability::new(1.0)
-}
-
-/// Latency of a frame, in seconds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub enum LatencyConfig {
-    /// Always the same.
-    Constant(NonNegative),
-    /// Uniform between two bounds.
-    Uniform {
-        /// Smallest latency.
-        min: NonNegative,
-        /// Largest latency, not below `min`.
-        max: NonNegative,
-    },
-    /// Normal, drawn again until at least `min` (a truncated normal).
-    Normal {
-        /// Mean before truncation.
-        mean: NonNegative,
-        /// Standard deviation before truncation.
-        std_dev: NonNegative,
-        /// Smallest latency, at most `mean`.
-        #[serde(default = "zero")]
-        min: NonNegative,
-    },
-    /// Log-normal.
-    LogNormal {
-        /// Median.
-        median: Positive,
-        /// Standard deviation of the logarithm.
-        sigma: NonNegative,
-    },
-    /// Gamma.
-    Gamma {
-        /// Shape.
-        shape: Positive,
-        /// Scale; the mean is shape · scale.
-        scale: Positive,
-    },
-    /// Exponential.
-    Exponential {
-        /// Mean.
-        mean: Positive,
-    },
-}
-
-impl LatencyConfig {
-    /// Mean latency in seconds, after truncation.
-    #[must_use]
-    pub fn mean(&self) -> f64 {
-        match *self {
-            Self::Constant(seconds) => seconds.get(),
-            Self::Uniform { min, max } => f64::midpoint(min.get(), max.get()),
-            Self::Normal { mean, std_dev, min } => truncated_mean(mean.get(), std_dev.get(), min.get()),
-            Self::LogNormal { median, sigma } => median.get() * (sigma.get().powi(2) / 2.0).exp(),
-            Self::Gamma { shape, scale } => shape.get() * scale.get(),
-            Self::Exponential { mean } => mean.get(),
-        }
-    }
-
-    fn problem(&self) -> Option<String> {
-        match *self {
-            Self::Uniform { min, max } if min > max => {
-                let (min, max) = (min.get(), max.get());
-                Some(format!("Uniform has min {min} above max {max}; exchange them"))
-            }
-            Self::Normal { mean, min, .. } if min > mean => {
-                let (min, mean) = (min.get(), mean.get());
-                Some(format!(
-                    "Normal has min {min} above mean {mean}; lower min to at most the mean, or raise the mean"
-                ))
-            }
-            _ => None,
+impl Serialize for RadioConfig {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Disk(config) => config.serialize(serializer),
+            Self::Shared(config) => config.serialize(serializer),
         }
     }
 }
 
-/// Mean of a normal distribution that is cut off below `min`: μ + σ φ(α) / (1 − Φ(α)), α = (min − μ) / σ.
-fn truncated_mean(mean: f64, std_dev: f64, min: f64) -> f64 {
-    if std_dev == 0.0 {
-        return mean;
-    }
-    let standard = Normal::standard();
-    let alpha = (min - mean) / std_dev;
-    mean + std_dev * standard.pdf(alpha) / standard.sf(alpha)
-}
-
-fn zero() -> NonNegative {
-    NonNegative::new(0.0)
-}
-
-/// Noise of situated communication.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct SensingConfig {
-    /// Standard deviation of the sensed range, as a share of it. A range is never sensed below 0.
-    pub range_noise: NonNegative,
-    /// Standard deviation of the sensed bearing, in degrees.
-    pub bearing_noise: NonNegative,
-}
-
-impl Default for SensingConfig {
-    fn default() -> Self {
-        Self {
-            range_noise: zero(),
-            bearing_noise: zero(),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn problems(loss: LossConfig, latency: LatencyConfig) -> Vec<(String, String)> {
-        RadioConfig {
-            loss,
-            latency,
-            ..RadioConfig::default()
-        }
-        .problems()
+impl JsonSchema for RadioConfig {
+    fn schema_name() -> Cow<'static, str> {
+        "RadioConfig".into()
     }
 
-    fn gilbert_elliott(good_to_bad: f64, bad_to_good: f64, good_loss: f64, bad_loss: f64) -> LossConfig {
-        LossConfig::GilbertElliott {
-            good_to_bad: Probability::new(good_to_bad),
-            bad_to_good: Probability::new(bad_to_good),
-            good_loss: Probability::new(good_loss),
-            bad_loss: Probability::new(bad_loss),
-        }
-    }
-
-    fn uniform(min: f64, max: f64) -> LatencyConfig {
-        LatencyConfig::Uniform {
-            min: NonNegative::new(min),
-            max: NonNegative::new(max),
-        }
-    }
-
-    fn normal(mean: f64, min: f64) -> LatencyConfig {
-        LatencyConfig::Normal {
-            mean: NonNegative::new(mean),
-            std_dev: NonNegative::new(0.003),
-            min: NonNegative::new(min),
-        }
-    }
-
-    #[test]
-    fn every_problem_is_reported_at_its_field_with_its_remedy() {
-        for (loss, latency, expected) in [
-            (
-                gilbert_elliott(0.0, 0.0, 0.0, 1.0),
-                uniform(0.0, 0.1),
-                vec![("loss", "set one of them above 0")],
-            ),
-            (
-                gilbert_elliott(0.1, 0.2, 0.9, 0.1),
-                uniform(0.0, 0.1),
-                vec![("loss", "exchange them")],
-            ),
-            (
-                LossConfig::None,
-                uniform(0.2, 0.1),
-                vec![("latency", "min 0.2 above max 0.1; exchange them")],
-            ),
-            (
-                LossConfig::None,
-                normal(0.01, 0.02),
-                vec![("latency", "lower min to at most the mean")],
-            ),
-            (
-                gilbert_elliott(0.0, 0.0, 0.0, 1.0),
-                normal(0.01, 0.02),
-                vec![("loss", "never changes state"), ("latency", "min 0.02 above mean 0.01")],
-            ),
-        ] {
-            let found = problems(loss, latency);
-            assert_eq!(found.len(), expected.len());
-            for ((field, message), (expected_field, part)) in found.iter().zip(expected) {
-                assert_eq!(field, expected_field);
-                assert!(message.contains(part), "{message}");
+    /// The fields of both, in one object: those of the disk radio first.
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut properties = serde_json::Map::new();
+        for schema in [DiskConfig::json_schema(generator), SharedConfig::json_schema(generator)] {
+            let own = schema.get("properties").and_then(Value::as_object).cloned();
+            for (field, shape) in own.unwrap_or_default() {
+                properties.entry(field).or_insert(shape);
             }
         }
-    }
-
-    #[test]
-    fn limits_that_meet_are_no_problem() {
-        for latency in [uniform(0.1, 0.1), normal(0.01, 0.01)] {
-            assert_eq!(problems(gilbert_elliott(0.0, 1.0, 0.5, 0.5), latency), []);
-        }
-        assert_eq!(RadioConfig::default().problems(), []);
+        json_schema!({
+            "description": "The radio: a disk (`range`, `loss`, `latency`), or a `technology` on a shared medium (`Shared(technology: ...)`).",
+            "type": "object",
+            "properties": properties,
+            "additionalProperties": false,
+        })
     }
 }

@@ -44,7 +44,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum LossCause {
-    /// The channel's loss model dropped it.
+    /// The channel dropped it: the disk radio's loss model, or bit errors that noise made.
     Channel,
     /// A fault of the link stopped it (a partition, a burst): decided when it is sent, before the channel.
     LinkFault,
@@ -53,15 +53,39 @@ pub enum LossCause {
     /// It was sent to a robot that was out of range: too weak for the receiver, whatever the channel. Broadcasts are offered to
     /// robots in range alone, so none is lost for this.
     BelowSensitivity,
+    /// Others sent at the same time, and it was not strong enough over them, or its receiver was on another frame.
+    Collision,
+    /// Its receiver was sending, or turning from hearing to sending or back.
+    HalfDuplex,
+    /// It never went out: the channel was found busy too often.
+    AccessFailure,
+    /// It found no room among what its sender still had to send.
+    QueueFull,
+    /// It found no room among what its sender still had to send, which was not allowed to send for a while.
+    DutyCycle,
+    /// It is longer than a frame of the technology may be.
+    TooLong,
+    /// A body or a wall stood in the way of light.
+    Occlusion,
+    /// Its sender lost the power to send before it was through.
+    SenderDown,
 }
 
 impl LossCause {
     /// Every cause, in the order of their numbers.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 12] = [
         Self::Channel,
         Self::LinkFault,
         Self::ReceiverDown,
         Self::BelowSensitivity,
+        Self::Collision,
+        Self::HalfDuplex,
+        Self::AccessFailure,
+        Self::QueueFull,
+        Self::DutyCycle,
+        Self::TooLong,
+        Self::Occlusion,
+        Self::SenderDown,
     ];
 
     /// The name that reports and tables use.
@@ -72,6 +96,14 @@ impl LossCause {
             Self::LinkFault => "link_fault",
             Self::ReceiverDown => "receiver_down",
             Self::BelowSensitivity => "below_sensitivity",
+            Self::Collision => "collision",
+            Self::HalfDuplex => "half_duplex",
+            Self::AccessFailure => "access_failure",
+            Self::QueueFull => "queue_full",
+            Self::DutyCycle => "duty_cycle",
+            Self::TooLong => "too_long",
+            Self::Occlusion => "occlusion",
+            Self::SenderDown => "sender_down",
         }
     }
 }

@@ -191,6 +191,14 @@ fn loss(cause: &str) -> &str {
         _ if cause == LossCause::LinkFault.name() => "stopped by a fault of the link",
         _ if cause == LossCause::ReceiverDown.name() => "lost: the receiver was down",
         _ if cause == LossCause::BelowSensitivity.name() => "sent to it alone, and out of range",
+        _ if cause == LossCause::Collision.name() => "lost in a collision",
+        _ if cause == LossCause::HalfDuplex.name() => "lost: the receiver was sending itself",
+        _ if cause == LossCause::AccessFailure.name() => "never sent: the channel was busy",
+        _ if cause == LossCause::QueueFull.name() => "never sent: the sender's queue was full",
+        _ if cause == LossCause::DutyCycle.name() => "never sent: the sender had to keep its duty cycle",
+        _ if cause == LossCause::TooLong.name() => "never sent: too long for a frame",
+        _ if cause == LossCause::Occlusion.name() => "lost: something stood in the way of light",
+        _ if cause == LossCause::SenderDown.name() => "lost: the sender failed before it was through",
         other => other,
     }
 }

@@ -1,0 +1,390 @@
+//! What a scenario says about the shared radio.
+
+use std::sync::Arc;
+
+use rand_distr::{Distribution, Normal};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::access::{AccessConfig, Draws};
+use super::agenda::{Agenda, Task};
+use super::burst::Bursts;
+use super::ear::Ear;
+use super::jammer::{Jammers, NoiseConfig};
+use super::link::LinkBudget;
+use super::receiver::{Receiver, milliwatts};
+use super::station::Radio;
+use super::{Shared, link, range};
+use crate::engine::{Purpose, Span, Streams};
+use crate::quantity::{Finite, NonNegative};
+use crate::radio::RadioSite;
+use crate::radio::disk_config::{DiskConfig, LatencyConfig, LossConfig, SensingConfig, WallsConfig};
+use crate::radio::propagation::{Fading, FadingConfig, PathLoss, PathLossConfig, Shadowing, ShadowingConfig, Walls};
+use crate::radio::sensing::Sensing;
+use crate::radio::technology::{Phy, TechnologyConfig};
+
+/// The shared radio: a technology, how signals spread, and how robots get at the medium. What is `None` is as the technology has it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename = "Shared")]
+pub struct SharedConfig {
+    /// What robots talk by.
+    pub technology: TechnologyConfig,
+    /// When a robot that has something to send does.
+    #[serde(default)]
+    pub access: Option<AccessConfig>,
+    /// What robots send with, dBm.
+    #[serde(default)]
+    pub transmit_power: Option<Finite>,
+    /// By how much robots differ in that, dB: standard deviation of a normal distribution, drawn once a trial for each.
+    #[serde(default = "none")]
+    pub transmit_power_spread: NonNegative,
+    /// Gain of each antenna, sending and receiving, dB.
+    #[serde(default = "no_gain")]
+    pub antenna_gain: Finite,
+    /// By how much robots differ in that, dB: standard deviation of a normal distribution, drawn once a trial for each.
+    #[serde(default = "none")]
+    pub antenna_gain_spread: NonNegative,
+    /// How much weaker a signal becomes with distance.
+    #[serde(default)]
+    pub path_loss: PathLossConfig,
+    /// What things in the way that are not modelled one by one add to that or take from it: slow changes from place to place.
+    #[serde(default)]
+    pub shadowing: Option<ShadowingConfig>,
+    /// What paths of different lengths make of a signal: fast changes from place to place.
+    #[serde(default)]
+    pub fading: FadingConfig,
+    /// What walls and obstacles of the arena do to signals: `Pass`, `Block`, or `Loss(dB)`. They stop light in any case.
+    #[serde(default)]
+    pub walls: WallsConfig,
+    /// By how many dB a frame must be above all frames of the same technology together that overlap it at a receiver; `inf`: whatever overlaps is lost.
+    /// `None`, spelt out: overlaps are noise like any other, and a receiver stays on the first frame that it noticed, as in ns-3.
+    #[serde(default, skip_serializing_if = "CaptureConfig::is_own")]
+    pub capture: CaptureConfig,
+    /// How many frames a robot holds that are to be sent, the one being sent included, at least 1: another is lost.
+    #[serde(default = "sixteen")]
+    #[schemars(range(min = 1))]
+    pub queue: u32,
+    /// What else is on air.
+    #[serde(default)]
+    pub noise: Vec<NoiseConfig>,
+    /// Bursts that reach a robot with less than its noise less so many dB are left out there: they are not even interference.
+    #[serde(default = "ten_decibels")]
+    pub negligible: NonNegative,
+    /// Bytes that every message in a frame carries beside its payload. `None`: one for its topic, if the protocol has more than one, and two for its length where
+    /// frames carry several messages.
+    #[serde(default)]
+    pub message_header_bytes: Option<u16>,
+    /// Payload of the lone frame that decides who is in range: two robots are where it would come through half of the time, fading averaged out.
+    #[serde(default = "twenty")]
+    pub range_payload: u16,
+    /// Noise of the receiver's sense of where a sender is.
+    #[serde(default)]
+    pub sensing: SensingConfig,
+}
+
+/// When a frame survives others.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum CaptureConfig {
+    /// At the ratio of its technology.
+    #[default]
+    Own,
+    /// As if they were noise.
+    AsNoise,
+    /// At so many dB above them all, from 0 on.
+    Ratio(f64),
+}
+
+impl CaptureConfig {
+    /// Whether it is the technology's.
+    #[must_use]
+    pub fn is_own(&self) -> bool {
+        *self == Self::Own
+    }
+}
+
+impl Serialize for CaptureConfig {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Ratio(ratio) => serializer.serialize_some(ratio),
+            Self::Own | Self::AsNoise => serializer.serialize_none(),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for CaptureConfig {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let ratio = Option::<f64>::deserialize(deserializer)?;
+        match ratio {
+            None => Ok(Self::AsNoise),
+            Some(ratio) if ratio >= 0.0 => Ok(Self::Ratio(ratio)),
+            Some(ratio) => Err(serde::de::Error::custom(format!(
+                "{ratio} is out of range: expected a ratio of at least 0 dB, inf, or None"
+            ))),
+        }
+    }
+}
+
+impl JsonSchema for CaptureConfig {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Capture".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "type": ["number", "null"], "minimum": 0.0 })
+    }
+}
+
+fn none() -> NonNegative {
+    NonNegative::new(0.0)
+}
+
+fn no_gain() -> Finite {
+    Finite::new(0.0)
+}
+
+fn ten_decibels() -> NonNegative {
+    NonNegative::new(10.0)
+}
+
+const fn sixteen() -> u32 {
+    16
+}
+
+const fn twenty() -> u16 {
+    20
+}
+
+const POWERS: Purpose = Purpose::new("radio.powers");
+
+/// Where there is no noise, what is left out is what is so many dB below the sensitivity, whatever `negligible` says more.
+const QUIET_DB: f64 = 30.0;
+
+impl SharedConfig {
+    /// The shared radio with all defaults.
+    #[must_use]
+    pub fn of(technology: TechnologyConfig) -> Self {
+        Self {
+            technology,
+            access: None,
+            transmit_power: None,
+            transmit_power_spread: none(),
+            antenna_gain: no_gain(),
+            antenna_gain_spread: none(),
+            path_loss: PathLossConfig::default(),
+            shadowing: None,
+            fading: FadingConfig::default(),
+            walls: WallsConfig::Pass,
+            capture: CaptureConfig::Own,
+            queue: sixteen(),
+            noise: Vec::new(),
+            negligible: ten_decibels(),
+            message_header_bytes: None,
+            range_payload: twenty(),
+            sensing: SensingConfig::default(),
+        }
+    }
+
+    /// How robots get at the medium.
+    #[must_use]
+    pub fn access(&self) -> AccessConfig {
+        self.access.clone().unwrap_or_else(|| AccessConfig::of(&self.technology))
+    }
+
+    /// The radio that each robot has.
+    ///
+    /// # Panics
+    /// If it has [`problems`](Self::problems).
+    #[must_use]
+    pub fn phy(&self) -> Phy {
+        let mut phy = self.technology.phy();
+        if let Some(power) = self.transmit_power {
+            phy.transmit_power = power.get();
+        }
+        phy.capture = match self.capture {
+            // Light that meets light cannot be told apart.
+            CaptureConfig::Own if phy.infrared.is_some() => Some(f64::INFINITY),
+            CaptureConfig::Own => phy.capture,
+            CaptureConfig::AsNoise => None,
+            CaptureConfig::Ratio(ratio) => Some(ratio),
+        };
+        phy
+    }
+
+    /// What is wrong between fields that are each in range: the path of the field at fault, from this section on, and what is wrong with it and would
+    /// be right.
+    #[must_use]
+    pub fn problems(&self, robots: u32) -> Vec<(String, String)> {
+        let within = |section: &str, problems: Vec<(String, String)>| {
+            let path = |(field, message): (String, String)| (format!("{section}.{field}"), message);
+            problems.into_iter().map(path).collect::<Vec<_>>()
+        };
+        let mut found = within("technology", self.technology.problems());
+        found.extend(within("path_loss", self.path_loss.problems()));
+        if let Some(access) = &self.access {
+            found.extend(within("access", access.problems(robots)));
+        }
+        if self.queue == 0 {
+            let message = "a queue of 0 frames sends nothing; expected at least 1";
+            found.push(("queue".to_owned(), message.to_owned()));
+        }
+        if found.is_empty() {
+            found.extend(self.misfits());
+        }
+        found
+    }
+
+    /// What of it does not fit together: frames that never fit a slot.
+    fn misfits(&self) -> Vec<(String, String)> {
+        let phy = self.phy();
+        let shortest = phy.airtime(0).as_secs();
+        let (slot, guard) = match self.access() {
+            AccessConfig::SlottedAloha { slot, .. } => (slot.get(), 0.0),
+            AccessConfig::Tdma { slot, guard, .. } => (slot.get(), guard.map_or(0.0, NonNegative::get)),
+            _ => return Vec::new(),
+        };
+        if slot - guard >= shortest {
+            return Vec::new();
+        }
+        let message = format!(
+            "even a frame without payload is on air for {shortest} s, and does not fit a slot of {slot} s less a guard of {guard} s; make the slot longer"
+        );
+        vec![("access.slot".to_owned(), message)]
+    }
+
+    /// The links between the robots of a trial.
+    pub(super) fn budget(&self, phy: &Phy, site: &RadioSite) -> LinkBudget {
+        let spread = self.spread(&site.streams, site.robots, phy.transmit_power);
+        let sigma = self.shadowing.as_ref().map_or(0.0, |shadowing| shadowing.sigma.get());
+        let fading = Fading::new(&self.fading, &site.streams, phy.frequency);
+        let threshold = range::threshold_dbm(phy, &fading, self.range_payload.into());
+        let noise = phy.noise.max(phy.sensitivity - QUIET_DB);
+        let strongest = |levels: &[f64]| levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        LinkBudget {
+            path: PathLoss::new(&self.path_loss, phy.frequency),
+            shadowing: self.shadowing.as_ref().map(|config| Shadowing::new(config, &site.streams)),
+            fading,
+            walls: self.walls(phy, site),
+            strongest: strongest(&spread.0),
+            best_gain: strongest(&spread.1),
+            sends: spread.0,
+            gains: spread.1,
+            infrared: phy.infrared.map(|infrared| infrared.range_m),
+            threshold: if phy.infrared.is_some() { link::UNSEEN_DBM } else { threshold },
+            floor: if phy.infrared.is_some() { link::UNSEEN_DBM } else { noise - self.negligible.get() },
+            sigma,
+        }
+    }
+
+    /// The walls of the site, if they matter.
+    fn walls(&self, phy: &Phy, site: &RadioSite) -> Option<Walls> {
+        let loss = match self.walls {
+            WallsConfig::Loss(loss) => loss.get(),
+            WallsConfig::Block => f64::INFINITY,
+            WallsConfig::Pass if phy.infrared.is_some() => f64::INFINITY,
+            WallsConfig::Pass => return None,
+        };
+        let blocks = loss == f64::INFINITY;
+        let obstacles = site.obstacles.iter().map(|obstacle| Obstacle {
+            // What stops everything takes no less for being thin.
+            attenuation: obstacle.attenuation.filter(|_| !blocks),
+            ..*obstacle
+        });
+        Some(Walls::new(obstacles.collect(), loss))
+    }
+
+    /// Whether frames take time on air.
+    #[must_use]
+    pub fn takes_time(&self) -> bool {
+        self.phy().airtime(1) > Span::ZERO
+    }
+
+    /// How many frames with so much payload a robot can put on air in a second that has it for itself, roughly.
+    #[must_use]
+    pub fn most_frames_a_second(&self, payload: u32) -> f64 {
+        let phy = self.phy();
+        let access = self.access();
+        let scheme = access.scheme(&self.technology, &phy, 1, 0.0);
+        let frame = phy.airtime(payload.min(phy.max_payload)) + scheme.least_delay();
+        1.0 / frame.max(Span::from_nanos(1_000)).as_secs()
+    }
+
+    /// The disk radio that is most like it.
+    pub(in crate::radio) fn like_disk(&self) -> DiskConfig {
+        let phy = self.phy();
+        let site = RadioSite::open(Streams::new(0, 0), 1);
+        let mut mean = self.clone();
+        mean.shadowing = None;
+        mean.transmit_power_spread = none();
+        mean.antenna_gain_spread = none();
+        let range = Links::farthest(&mean.budget(&phy, &site));
+        let access = self.access().scheme(&self.technology, &phy, 1, 0.0).least_delay();
+        let latency = access + phy.airtime(self.range_payload.into());
+        DiskConfig {
+            range: Positive::new(range.clamp(1e-3, 1e6)),
+            loss: LossConfig::None,
+            latency: LatencyConfig::Constant(NonNegative::new(latency.as_secs())),
+            frame_header_bytes: phy.header_bytes as u16,
+            message_header_bytes: self.message_header_bytes.unwrap_or(1),
+            sensing: self.sensing.clone(),
+            walls: self.walls,
+        }
+    }
+
+    /// What each robot sends with, its antenna's gain included, dBm, and that gain, dB.
+    fn spread(&self, streams: &Streams, robots: usize, power: f64) -> (Vec<f64>, Vec<f64>) {
+        let streams = streams.keyed(POWERS);
+        let normal = |mean: f64, spread: NonNegative| Normal::new(mean, spread.get()).ok();
+        let power = normal(power, self.transmit_power_spread);
+        let gain = normal(self.antenna_gain.get(), self.antenna_gain_spread);
+        (0..robots as u32)
+            .map(|robot| {
+                let mut stream = streams.at(robot, 0, 0);
+                let mut draw = |normal: Option<Normal<f64>>| normal.map_or(0.0, |normal| normal.sample(&mut stream));
+                let (power, gain) = (draw(power), draw(gain));
+                (power + gain, gain)
+            })
+            .unzip()
+    }
+}
+
+impl Shared {
+    /// The radio that `config` describes, at `site`.
+    ///
+    /// # Panics
+    /// If `config` has problems: a scenario is checked before it is run.
+    #[must_use]
+    pub fn new(config: &SharedConfig, site: &RadioSite) -> Self {
+        let problems = config.problems(site.robots as u32);
+        assert!(problems.is_empty(), "the radio's configuration is unusable: {problems:?}");
+        let phy = config.phy();
+        let access = config.access();
+        let robots = site.robots;
+        let mut agenda = Agenda::default();
+        let jammers = Jammers::new(&config.noise);
+        for (place, at) in jammers.begin() {
+            agenda.add(at, Task::Jam(place));
+        }
+        let drift = site.skews.iter().copied().fold(0.0, |most: f64, skew| most.max(skew.abs()));
+        Self {
+            budget: Arc::new(config.budget(&phy, site)),
+            scheme: access.scheme(&config.technology, &phy, robots, drift),
+            receiver: Receiver::new(&phy, &access, milliwatts(jammers.background()), &site.streams),
+            jammers,
+            sensing: Sensing::new(&config.sensing, site.streams),
+            draws: Draws::new(&site.streams, robots),
+            agenda,
+            bursts: Bursts::default(),
+            radios: std::iter::repeat_with(Radio::default).take(robots).collect(),
+            ears: std::iter::repeat_with(Ear::default).take(robots).collect(),
+            skews: site.skews.clone(),
+            room: config.queue as usize,
+            longest: Span::ZERO,
+            body_radius: site.body_radius,
+            reached: Vec::new(),
+            spare: Vec::new(),
+            shortest: phy.airtime(0),
+            channels: phy.channels,
+            phy,
+        }
+    }
+}

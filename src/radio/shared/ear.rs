@@ -1,0 +1,133 @@
+//! What a robot's antenna takes up: the bursts that reach it above the floor, each with its power there, and when it was deaf.
+//!
+//! Everything that a receiver or medium access asks of the air is asked of one robot's ear: whether the channel is clear, what overlaps
+//! with a frame, what it has locked on. An ear is filled when a burst begins, with one look at each robot that it reaches, and nothing is searched for.
+
+use std::collections::VecDeque;
+
+use super::burst::BurstId;
+use crate::engine::{SimTime, Span};
+
+/// A burst at one robot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Heard {
+    /// Which.
+    pub burst: BurstId,
+    /// From when to when.
+    pub begins: SimTime,
+    pub ends: SimTime,
+    /// Its power there, milliwatts.
+    pub power: f64,
+    /// On which channel.
+    pub channel: u8,
+    /// Whether it is no frame but noise.
+    pub is_noise: bool,
+}
+
+impl Heard {
+    /// Whether it is on air at any time from `from` to before `until`.
+    #[inline]
+    pub fn overlaps(&self, from: SimTime, until: SimTime) -> bool {
+        self.begins < until && self.ends > from
+    }
+}
+
+/// One robot's.
+#[derive(Debug, Default)]
+pub(super) struct Ear {
+    /// In the order in which they began.
+    heard: VecDeque<Heard>,
+    /// When it sent or turned round, and so heard nothing, in order of time.
+    deaf: VecDeque<(SimTime, SimTime)>,
+    /// How long it has heard the channel busy, and until when it will.
+    busy: Span,
+    busy_until: SimTime,
+}
+
+impl Ear {
+    /// Takes up a burst, and forgets what ended before `since`.
+    pub fn hear(&mut self, heard: Heard, since: SimTime) {
+        while self.heard.front().is_some_and(|oldest| oldest.ends < since) {
+            self.heard.pop_front();
+        }
+        self.heard.push_back(heard);
+    }
+
+    /// Notes that the channel is busy here from `begins` to `ends`, which is no earlier than what was noted before.
+    pub fn note_busy(&mut self, begins: SimTime, ends: SimTime) {
+        let from = begins.max(self.busy_until);
+        if ends > from {
+            self.busy = self.busy + ends.since(from);
+            self.busy_until = ends;
+        }
+    }
+
+    /// For how long the channel was busy here up to `now`.
+    pub fn busy_by(&self, now: SimTime) -> Span {
+        // What is on air now has been counted to its end.
+        if self.busy_until > now {
+            let ahead = self.busy_until.since(now);
+            Span::from_nanos(self.busy.as_nanos().saturating_sub(ahead.as_nanos()))
+        } else {
+            self.busy
+        }
+    }
+
+    /// It sends or turns round from `from` to before `until`. What ended before `since` is forgotten.
+    pub fn deafen(&mut self, from: SimTime, until: SimTime, since: SimTime) {
+        while self.deaf.front().is_some_and(|oldest| oldest.1 < since) {
+            self.deaf.pop_front();
+        }
+        self.deaf.push_back((from, until));
+    }
+
+    /// What it was to send from now on it does not: it hears again from `now` on.
+    pub fn hear_again(&mut self, now: SimTime) {
+        for interval in &mut self.deaf {
+            interval.1 = interval.1.min(now).max(interval.0);
+        }
+    }
+
+    /// Whether it was deaf for any time from `from` to before `until`.
+    pub fn is_deaf(&self, from: SimTime, until: SimTime) -> bool {
+        let overlaps = |deaf: &&(SimTime, SimTime)| deaf.0 < until && deaf.1 > from;
+        self.deaf.iter().rev().any(|deaf| overlaps(&deaf))
+    }
+
+    /// This burst, if it reaches here.
+    pub fn of(&self, burst: BurstId) -> Option<&Heard> {
+        let heard = self.heard.iter().rev();
+        heard.take_while(|heard| heard.burst >= burst).find(|heard| heard.burst == burst)
+    }
+
+    /// All that is on air on `channel` at any time from `from` to before `until`, as it began.
+    pub fn during(&self, channel: u8, from: SimTime, until: SimTime) -> impl DoubleEndedIterator<Item = &Heard> + Clone {
+        let heard = self.heard.iter();
+        heard.filter(move |heard| (heard.channel == channel || heard.is_noise) && heard.overlaps(from, until))
+    }
+
+    /// The places of what is known of `burst` and of those that began after it, for [`at`](Self::at).
+    pub fn from(&self, burst: BurstId) -> std::ops::Range<usize> {
+        self.heard.partition_point(|heard| heard.burst < burst)..self.heard.len()
+    }
+
+    /// What stands at a place.
+    pub fn at(&self, place: usize) -> Heard {
+        self.heard[place]
+    }
+
+    /// All frames on the channel of `heard` that are remembered, up to itself, as they began.
+    pub fn until(&self, heard: &Heard) -> impl Iterator<Item = &Heard> {
+        let (burst, channel) = (heard.burst, heard.channel);
+        let earlier = self.heard.iter().take_while(move |heard| heard.burst <= burst);
+        earlier.filter(move |heard| heard.channel == channel && !heard.is_noise)
+    }
+
+    /// A burst breaks off.
+    pub fn cut(&mut self, burst: BurstId, now: SimTime) {
+        let heard = self.heard.iter_mut().rev();
+        if let Some(heard) = heard.take_while(|heard| heard.burst >= burst).find(|heard| heard.burst == burst) {
+            heard.ends = now;
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! Bursts: they begin, reach everybody in earshot, end, are judged, and are answered.
+
+use super::access::{Next, Outcome};
+use super::agenda::Task;
+use super::burst::{Burst, BurstId, Content};
+use super::ear::Heard;
+use super::station::Doing;
+use super::{Shared, link};
+use crate::engine::{ActorId, SimTime, Span};
+use crate::geometry::Vec2;
+use crate::radio::draw::FrameCopy;
+use crate::radio::{Fate, Fates, FrameId, LossCause, Places};
+
+impl Shared {
+    /// `robot` sends the head of its queue on `channel`.
+    pub(super) fn begin(&mut self, now: SimTime, robot: ActorId, channel: u8, places: &dyn Places) {
+        let radio = &mut self.radios[robot.index()];
+        let Some(head) = radio.queue.front_mut() else {
+            return;
+        };
+        head.began.get_or_insert(now);
+        let content = Content::Frame {
+            frame: head.frame,
+            attempt: head.attempt,
+            payload: head.payload,
+            to: head.to,
+        };
+        let airtime = head.airtime;
+        let burst = self.put_on_air(now, robot, content, airtime, channel, places);
+        self.radios[robot.index()].replan(Doing::Sends(burst));
+    }
+
+    /// Puts a burst on air: whoever it reaches takes it up.
+    fn put_on_air(
+        &mut self,
+        now: SimTime,
+        robot: ActorId,
+        content: Content,
+        airtime: Span,
+        channel: u8,
+        places: &dyn Places,
+    ) -> BurstId {
+        let position = places.position(robot, now);
+        let ends = now + airtime;
+        self.longest = self.longest.max(airtime);
+        let since = self.since(now);
+        self.bursts.forget(since);
+        let burst = self.bursts.add(Burst {
+            sender: robot,
+            content,
+            begins: now,
+            ends,
+            position,
+            channel,
+            cut: false,
+        });
+        self.agenda.add(ends, Task::End(burst));
+        let mut heard = Heard {
+            burst,
+            begins: now,
+            ends,
+            power: f64::INFINITY,
+            channel,
+            is_noise: false,
+        };
+        self.ears[robot.index()].hear(heard, since);
+        self.ears[robot.index()].note_busy(now, ends);
+        self.radios[robot.index()].bursts += 1;
+
+        let mut reached = std::mem::take(&mut self.reached);
+        reached.clear();
+        places.for_each_within(position, now, self.budget.audible(), &mut |other, place| reached.push((other, place)));
+        for &(other, place) in &reached {
+            if other == robot || self.is_hidden(robot, position, other, place, &reached) {
+                continue;
+            }
+            heard.power = self.budget.milliwatts((robot, position), (other, place), now);
+            if heard.power > 0.0 {
+                let ear = &mut self.ears[other.index()];
+                ear.hear(heard, since);
+                if self.receiver.is_busy(&heard) {
+                    ear.note_busy(now, ends);
+                }
+            }
+        }
+        self.reached = reached;
+        burst
+    }
+
+    /// A jammer is on for a while: whoever it reaches takes it up.
+    pub(super) fn jam(&mut self, now: SimTime, place: u32, places: &dyn Places) {
+        let jammer = self.jammers.get(place);
+        let (ends, next) = jammer.burst(now);
+        if let Some(next) = next {
+            self.agenda.add(next, Task::Jam(place));
+        }
+        let since = self.since(now);
+        self.bursts.forget(since);
+        let burst = self.bursts.add(Burst {
+            sender: link::NOBODY,
+            content: Content::Noise,
+            begins: now,
+            ends,
+            position: jammer.position,
+            channel: 0,
+            cut: false,
+        });
+        let mut reached = std::mem::take(&mut self.reached);
+        reached.clear();
+        let range = self.budget.audible_from(jammer.power);
+        places.for_each_within(jammer.position, now, range, &mut |robot, place| reached.push((robot, place)));
+        for &(robot, place) in &reached {
+            let power = self.budget.noise_milliwatts(jammer.power, jammer.position, (robot, place), now);
+            if power > 0.0 {
+                let heard = Heard {
+                    burst,
+                    begins: now,
+                    ends,
+                    power,
+                    channel: 0,
+                    is_noise: true,
+                };
+                let ear = &mut self.ears[robot.index()];
+                ear.hear(heard, since);
+                if self.receiver.is_busy(&heard) {
+                    ear.note_busy(now, ends);
+                }
+            }
+        }
+        self.reached = reached;
+    }
+
+    /// Whether a third body among `near` is in the way of light.
+    fn is_hidden(&self, from: ActorId, here: Vec2, to: ActorId, there: Vec2, near: &[(ActorId, Vec2)]) -> bool {
+        self.budget.infrared.is_some()
+            && near.iter().any(|&(third, body)| {
+                third != from && third != to && link::hides(body, self.body_radius, here, there)
+            })
+    }
+
+    /// A burst is over: who has it and who has not is decided, as far as it can be.
+    pub(super) fn end(
+        &mut self,
+        now: SimTime,
+        id: BurstId,
+        places: &dyn Places,
+        fates: &mut Fates,
+    ) -> Option<FrameId> {
+        let burst = self.bursts.get(id)?.clone();
+        match burst.content {
+            Content::Frame { frame, to, .. } => {
+                self.receive(now, id, &burst, places, fates);
+                if self.radios[burst.sender.index()].doing != Doing::Sends(id) {
+                    return Some(frame);
+                }
+                if burst.cut {
+                    return self.conclude_cut(now, burst.sender, fates);
+                }
+                if burst.channel + 1 < self.channels {
+                    self.begin(now, burst.sender, burst.channel + 1, places);
+                    return Some(frame);
+                }
+                match (to, self.scheme.answering()) {
+                    (Some(to), Some(answering)) => {
+                        let mut patience = answering.patience;
+                        if self.answer(now, id, &burst, to) {
+                            let answer = self.answer_airtime() + Span::from_nanos(1);
+                            patience = patience.max(answering.after + answer);
+                        }
+                        let stamp = self.radios[burst.sender.index()].replan(Doing::Waits(id));
+                        self.agenda.add(now + patience, Task::Timeout(burst.sender.0, stamp));
+                        Some(frame)
+                    }
+                    _ => self.conclude(now, burst.sender, Outcome::Sent, fates),
+                }
+            }
+            Content::Acknowledgement { of, to } => {
+                let waits = self.radios[to.index()].doing == Doing::Waits(of);
+                let gets = waits && self.verdict(id, &burst, to).is_ok();
+                gets.then(|| self.conclude(now, to, Outcome::Acknowledged, fates))?
+            }
+            Content::Noise => None,
+        }
+    }
+
+    /// Decides who of those that have not got the frame has it now.
+    fn receive(&mut self, now: SimTime, id: BurstId, burst: &Burst, places: &dyn Places, fates: &mut Fates) {
+        let Some(head) = self.radios[burst.sender.index()].queue.front_mut() else {
+            return;
+        };
+        let (frame, to) = (head.frame, head.to);
+        let mut open = std::mem::take(&mut head.open);
+        let mut arrived = head.arrived;
+        open.retain_mut(|(receiver, cause)| match self.verdict(id, burst, *receiver) {
+            Ok(()) => {
+                arrived |= to == Some(*receiver);
+                let copy = FrameCopy {
+                    sender: burst.sender,
+                    receiver: *receiver,
+                    sequence: frame.number,
+                };
+                let displacement = self.sensing.displacement(copy, burst.position - places.position(*receiver, now));
+                fates.push(*receiver, Fate::Arrives { at: now, displacement });
+                false
+            }
+            Err(why) => {
+                *cause = why;
+                true
+            }
+        });
+        if let Some(head) = self.radios[burst.sender.index()].queue.front_mut() {
+            head.open = open;
+            head.arrived = arrived;
+        }
+    }
+
+    /// Whether `receiver` has got a burst that ends now, or why not.
+    fn verdict(&self, id: BurstId, burst: &Burst, receiver: ActorId) -> Result<(), LossCause> {
+        if burst.cut {
+            return Err(LossCause::SenderDown);
+        }
+        if self.radios[receiver.index()].hears_from > burst.begins {
+            return Err(LossCause::ReceiverDown);
+        }
+        let ear = &self.ears[receiver.index()];
+        let Some(heard) = ear.of(id) else {
+            let infrared = self.budget.infrared.is_some();
+            return Err(if infrared { LossCause::Occlusion } else { LossCause::BelowSensitivity });
+        };
+        if !self.listens_to(receiver, burst) {
+            return Err(LossCause::Channel);
+        }
+        if !self.receiver.is_orthogonal() && ear.is_deaf(burst.begins, burst.ends) {
+            return Err(LossCause::HalfDuplex);
+        }
+        self.receiver.judge(ear, heard, burst, receiver)
+    }
+
+    /// Whether `to` answers a burst that ends now, which it then plans.
+    fn answer(&mut self, now: SimTime, id: BurstId, burst: &Burst, to: ActorId) -> bool {
+        let Some(answering) = self.scheme.answering() else {
+            return false;
+        };
+        let radio = &self.radios[to.index()];
+        if !radio.sends || matches!(radio.doing, Doing::Turns | Doing::Sends(_)) || self.verdict(id, burst, to).is_err() {
+            return false;
+        }
+        let begins = now + answering.after;
+        let ends = begins + self.answer_airtime();
+        let since = self.since(now);
+        self.ears[to.index()].deafen(now, ends + self.scheme.turnaround(), since);
+        self.radios[to.index()].answers_until = ends;
+        self.agenda.add(begins, Task::Acknowledge(to.0, id));
+        true
+    }
+
+    fn answer_airtime(&self) -> Span {
+        self.phy.acknowledgement().map_or(Span::ZERO, |answer| answer.airtime())
+    }
+
+    /// `robot` answers a burst.
+    pub(super) fn acknowledge(&mut self, now: SimTime, robot: ActorId, of: BurstId, places: &dyn Places) {
+        let Some(to) = self.bursts.get(of).map(|burst| burst.sender) else {
+            return;
+        };
+        if self.radios[robot.index()].sends {
+            let content = Content::Acknowledgement { of, to };
+            self.put_on_air(now, robot, content, self.answer_airtime(), 0, places);
+        }
+    }
+
+    /// The sending of the head of `robot`'s queue ended so: medium access says what follows.
+    pub(super) fn conclude(
+        &mut self,
+        now: SimTime,
+        robot: ActorId,
+        outcome: Outcome,
+        fates: &mut Fates,
+    ) -> Option<FrameId> {
+        let next = self.at_medium(now, robot, |scheme, station| scheme.after(now, outcome, station));
+        let radio = &mut self.radios[robot.index()];
+        let stamp = radio.replan(Doing::Contends);
+        match next {
+            Next::Again(at) => {
+                self.agenda.add(at, Task::Access(robot.0, stamp));
+                let head = radio.queue.front_mut()?;
+                head.attempt += 1;
+                Some(head.frame)
+            }
+            Next::Done(at) => {
+                self.agenda.add(at, Task::Access(robot.0, stamp));
+                self.drop_head(robot, None, fates)
+            }
+        }
+    }
+
+    /// A robot that had fallen silent is through with the frame that it did not send to the end.
+    fn conclude_cut(&mut self, now: SimTime, robot: ActorId, fates: &mut Fates) -> Option<FrameId> {
+        let stamp = self.radios[robot.index()].replan(Doing::Contends);
+        self.agenda.add(now, Task::Access(robot.0, stamp));
+        self.drop_head(robot, Some(LossCause::SenderDown), fates)
+    }
+
+    /// `robot` can send no more: what it sends breaks off, and what it was to send is lost.
+    pub(super) fn silence(&mut self, now: SimTime, robot: ActorId) {
+        self.scheme.reset(robot);
+        let radio = &mut self.radios[robot.index()];
+        match radio.doing {
+            Doing::Sends(id) => {
+                if let Some(burst) = self.bursts.get_mut(id) {
+                    burst.cut = true;
+                    burst.ends = now;
+                }
+                for ear in &mut self.ears {
+                    ear.cut(id, now);
+                }
+            }
+            _ => {
+                radio.replan(Doing::Rests);
+            }
+        }
+        self.ears[robot.index()].hear_again(now);
+        self.agenda.add(now, Task::Flush(robot.0));
+    }
+
+    /// Gives up a frame that `robot` will not send, if there is one.
+    pub(super) fn flush(&mut self, now: SimTime, robot: ActorId, fates: &mut Fates) -> Option<FrameId> {
+        let radio = &mut self.radios[robot.index()];
+        let under_way = usize::from(matches!(radio.doing, Doing::Sends(_)));
+        if radio.sends || radio.queue.len() <= under_way {
+            return None;
+        }
+        let mut queued = radio.queue.remove(under_way)?;
+        for (receiver, _) in queued.open.drain(..) {
+            fates.push(receiver, Fate::Lost(LossCause::SenderDown));
+        }
+        self.agenda.add(now, Task::Flush(robot.0));
+        Some(queued.frame)
+    }
+}

@@ -1,0 +1,252 @@
+//! What a receiver makes of what reaches its antenna: noise, overlaps, capture, locking, bit errors.
+//!
+//! A reception is judged once, when its frame ends. Between the instants at which something else begins or ends the ratio of signal to
+//! interference and noise is constant, so the probability that all bits are right is a product over these chunks; one keyed number decides. The better the
+//! ratio the greater is that probability, and what survives in worse conditions survives in better ones.
+
+use super::access::AccessConfig;
+use super::burst::{Burst, Content};
+use super::ear::{Ear, Heard};
+use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
+use crate::radio::LossCause;
+use crate::radio::draw::unit_interval;
+use crate::radio::technology::{Phy, Waveform};
+
+/// What survives the bit errors is drawn from here: by sender, receiver and frame. Acknowledgements have their own draws.
+const ERRORS: Purpose = Purpose::new("radio.errors");
+const ACKNOWLEDGEMENTS: Purpose = Purpose::new("radio.acknowledgements");
+
+const INSTANT: Span = Span::from_nanos(1);
+
+/// The receivers of a run: all alike. Powers are in milliwatts, ratios plain.
+#[derive(Debug)]
+pub(super) struct Receiver {
+    noise: f64,
+    sensitivity: f64,
+    /// From which energy on the channel is busy, and from which power of a single frame.
+    assess: Option<f64>,
+    carrier: Option<f64>,
+    lock: f64,
+    capture: Option<f64>,
+    /// Whether frames do not disturb each other at all.
+    orthogonal: bool,
+    /// How long a frame must have been on air before it is noticed.
+    latency: Span,
+    /// The share of frames that nothing modelled drops.
+    kept: f64,
+    phy: Phy,
+    errors: KeyedStreams,
+    acknowledgements: KeyedStreams,
+}
+
+impl Receiver {
+    /// Those of `phy`, with so much noise beside their own, for robots that get at the medium by `access`.
+    pub fn new(phy: &Phy, access: &AccessConfig, background: f64, streams: &Streams) -> Self {
+        Self {
+            noise: milliwatts(phy.noise) + background,
+            sensitivity: milliwatts(phy.sensitivity),
+            assess: phy.assess.map(milliwatts),
+            carrier: phy.carrier.or(phy.assess).map(milliwatts),
+            lock: ratio(phy.lock),
+            capture: phy.capture.map(ratio),
+            orthogonal: access.is_orthogonal(),
+            latency: access.latency(),
+            kept: phy.infrared.map_or(1.0, |infrared| 1.0 - infrared.drop),
+            phy: phy.clone(),
+            errors: streams.keyed(ERRORS),
+            acknowledgements: streams.keyed(ACKNOWLEDGEMENTS),
+        }
+    }
+
+    /// Whether frames do not disturb each other, nor those that send them.
+    pub fn is_orthogonal(&self) -> bool {
+        self.orthogonal
+    }
+
+    /// Whether the energy of all that was on air at any time from `from` to before `until` says that the channel is busy. Light of any strength does.
+    pub fn senses(&self, ear: &Ear, from: SimTime, until: SimTime) -> bool {
+        let powers = ear.during(0, from, until).map(|heard| heard.power);
+        match self.assess {
+            Some(assess) => self.noise + powers.sum::<f64>() >= assess,
+            None => self.phy.infrared.is_some() && powers.count() > 0,
+        }
+    }
+
+    /// Whether this makes the channel busy for medium access.
+    pub fn is_carrier(&self, heard: &Heard) -> bool {
+        let least = if heard.is_noise { self.assess } else { self.carrier };
+        least.is_some_and(|least| heard.power >= least)
+    }
+
+    /// Whether this makes the channel busy for those who ask how full it is: where nobody listens before sending, what is strong enough to be received.
+    pub fn is_busy(&self, heard: &Heard) -> bool {
+        self.is_carrier(heard) || (self.assess.is_none() && heard.power >= self.sensitivity)
+    }
+
+    /// Whether it takes note of a frame that begins: as long as that takes the frame is strong enough over all else.
+    pub fn detects(&self, ear: &Ear, heard: &Heard) -> bool {
+        let until = heard.begins + self.latency.max(INSTANT);
+        let others = ear.during(heard.channel, heard.begins, until);
+        let others: f64 = others.filter(|other| other.burst != heard.burst).map(|other| other.power).sum();
+        heard.power > self.lock * (self.noise + others)
+    }
+
+    /// Whether `robot`, which listened from the beginning to the end, understood `burst`, or why it did not.
+    pub fn judge(&self, ear: &Ear, heard: &Heard, burst: &Burst, robot: ActorId) -> Result<(), LossCause> {
+        if self.noise == 0.0 && heard.power < self.sensitivity {
+            return Err(LossCause::BelowSensitivity);
+        }
+        let waveform = self.waveform(burst);
+        let alone = || self.survival(&waveform, burst, (heard.begins, heard.ends), heard.power / self.noise);
+        let others = ear.during(heard.channel, heard.begins, heard.ends);
+        let mut others = others.filter(|other| other.burst != heard.burst);
+        let disturbed = !self.orthogonal && others.clone().next().is_some();
+        if self.capture.is_none() && !self.orthogonal {
+            if heard.power <= self.lock * self.noise {
+                return Err(LossCause::BelowSensitivity);
+            }
+            if disturbed && !self.locks(ear, heard) {
+                return Err(LossCause::Collision);
+            }
+        }
+        let survival = if disturbed {
+            let mut sum = 0.0;
+            // From one change of the interference to the next.
+            let mut from = heard.begins;
+            while from < heard.ends {
+                let chunk = Chunk::of(from, heard.ends, &mut others.clone());
+                let drowns = |capture| chunk.frames > 0.0 && heard.power < capture * chunk.frames;
+                if self.capture.is_some_and(drowns) {
+                    return Err(LossCause::Collision);
+                }
+                let sinr = heard.power / (self.noise + chunk.frames + chunk.noise);
+                sum += self.survival(&waveform, burst, (from, chunk.until), sinr);
+                from = chunk.until;
+            }
+            sum
+        } else {
+            alone()
+        };
+        let drawn = self.draw(burst, robot);
+        if drawn < self.kept * probability(survival) {
+            return Ok(());
+        }
+        Err(if drawn < self.kept * probability(alone()) {
+            LossCause::Collision
+        } else if heard.power < self.sensitivity {
+            LossCause::BelowSensitivity
+        } else {
+            LossCause::Channel
+        })
+    }
+
+    /// Whether the receiver is on this frame, and not on one that began before: it takes the first that it notices, and stays on it to its end.
+    fn locks(&self, ear: &Ear, heard: &Heard) -> bool {
+        let mut on: Option<Heard> = None;
+        for frame in ear.until(heard) {
+            let is_taken = |on: &Heard| frame.begins < on.ends && !ear.is_deaf(on.begins, frame.begins);
+            if on.as_ref().is_some_and(is_taken) || ear.is_deaf(frame.begins, frame.begins + INSTANT) {
+                continue;
+            }
+            if self.detects(ear, frame) {
+                on = Some(*frame);
+            }
+        }
+        on.is_some_and(|on| on.burst == heard.burst)
+    }
+
+    fn waveform(&self, burst: &Burst) -> Waveform {
+        match burst.content {
+            Content::Frame { payload, .. } => self.phy.frame(payload),
+            Content::Acknowledgement { .. } | Content::Noise => {
+                self.phy.acknowledgement().unwrap_or_else(|| self.phy.frame(0))
+            }
+        }
+    }
+
+    /// The logarithm of the probability that all bits of a burst within a time come through at a ratio.
+    fn survival(&self, waveform: &Waveform, burst: &Burst, (from, until): (SimTime, SimTime), sinr: f64) -> f64 {
+        let mut begins = burst.begins;
+        let mut sum = 0.0;
+        for section in waveform.sections() {
+            let ends = begins + section.airtime;
+            let (first, last) = (begins.max(from), ends.min(until));
+            if section.bits > 0 && (last > first || section.airtime == Span::ZERO) {
+                let share = if section.airtime == Span::ZERO {
+                    1.0
+                } else {
+                    last.since(first).as_nanos() as f64 / section.airtime.as_nanos() as f64
+                };
+                sum += f64::from(section.bits) * share * section.modulation.log_survival(sinr);
+            }
+            begins = ends;
+        }
+        sum
+    }
+
+    fn draw(&self, burst: &Burst, robot: ActorId) -> f64 {
+        let bits = match burst.content {
+            Content::Frame { frame, attempt, .. } => {
+                let words = [frame.sender.0, robot.0, frame.number];
+                nth(&self.errors, words, attempt * 4 + u32::from(burst.channel))
+            }
+            Content::Acknowledgement { of, .. } => {
+                nth(&self.acknowledgements, [burst.sender.0, robot.0, of.0 as u32], 0)
+            }
+            Content::Noise => 0,
+        };
+        unit_interval(bits)
+    }
+}
+
+/// The so manieth 64 bits of a stream, from 0.
+fn nth(streams: &KeyedStreams, [a, b, sequence]: [u32; 3], place: u32) -> u64 {
+    if place == 0 {
+        return streams.first_two(a, b, sequence)[0];
+    }
+    let mut stream = streams.at(a, b, sequence);
+    (0..=place).map(|_| stream.next_u64()).last().unwrap_or_default()
+}
+
+/// A time without change.
+struct Chunk {
+    until: SimTime,
+    /// The power of other frames, and of noise.
+    frames: f64,
+    noise: f64,
+}
+
+impl Chunk {
+    /// What is on air at `from`, until that changes or until `end`.
+    fn of<'a>(from: SimTime, end: SimTime, others: &mut dyn Iterator<Item = &'a Heard>) -> Self {
+        let mut chunk = Self {
+            until: end,
+            frames: 0.0,
+            noise: 0.0,
+        };
+        for other in others {
+            if other.begins > from {
+                chunk.until = chunk.until.min(other.begins);
+            } else if other.ends > from {
+                chunk.until = chunk.until.min(other.ends);
+                let sum = if other.is_noise { &mut chunk.noise } else { &mut chunk.frames };
+                *sum += other.power;
+            }
+        }
+        chunk
+    }
+}
+
+fn probability(log: f64) -> f64 {
+    if log == 0.0 { 1.0 } else { libm::exp(log) }
+}
+
+/// A level in dBm as milliwatts.
+pub(super) fn milliwatts(dbm: f64) -> f64 {
+    libm::exp10(dbm / 10.0)
+}
+
+/// Decibels as a ratio.
+pub(super) fn ratio(db: f64) -> f64 {
+    libm::exp10(db / 10.0)
+}
