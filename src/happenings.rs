@@ -5,7 +5,7 @@ use crate::faults::Change;
 use crate::geometry::Vec2;
 use crate::motion::World;
 use crate::protocol::{Address, Input, MessageSize, Note, Output, Reception, Topic};
-use crate::radio::LossCause;
+use crate::radio::{Account, Conclusion, FrameId, LossCause, Reading};
 
 mod composed;
 
@@ -68,6 +68,9 @@ pub trait Observer {
         false
     }
 
+    /// The run begins, with everyone where `world` has them.
+    fn begin(&mut self, world: &World) {}
+
     /// `robot` woke at `now`, was told the `input` and answered with the `output`, which is yet to take effect.
     fn woke<H, M>(&mut self, now: SimTime, robot: ActorId, input: &Input<H>, output: &Output<M>) {}
 
@@ -95,6 +98,15 @@ pub trait Observer {
 
     /// A copy is still under way when the run ends, and would have arrived at `at`; `None` if not even the radio knows whether it would have.
     fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {}
+
+    /// The radio of its sender is done with a frame, over a radio on which frames take time.
+    fn concluded(&mut self, conclusion: &Conclusion) {}
+
+    /// What one of those that a frame was offered to measured of it, over a radio that knows powers. Told when its copy is decided.
+    fn measured(&mut self, now: SimTime, frame: FrameId, reading: &Reading) {}
+
+    /// What the radio of `robot` did in all of the run, if it keeps accounts. Told at the end.
+    fn accounted(&mut self, robot: ActorId, account: &Account) {}
 
     /// A fault began or ended, with every robot at its place in `positions`.
     fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {}

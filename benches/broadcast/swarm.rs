@@ -10,7 +10,7 @@ use desim::protocol::control::{ControlConfig, PhaseConfig};
 use desim::protocol::detector::DetectorConfig;
 use desim::protocol::gossip::GossipConfig;
 use desim::quantity::{NonNegative, Positive, Probability};
-use desim::radio::{LatencyConfig, LossConfig, RadioConfig};
+use desim::radio::{DiskConfig, LatencyConfig, LossConfig};
 use desim::simulation::{DriverKind, Setup};
 use tokio_util::sync::CancellationToken;
 
@@ -59,7 +59,7 @@ fn setup(workload: &Workload) -> Setup {
             phase: PhaseConfig::Random,
             ..ControlConfig::default()
         },
-        radio: RadioConfig {
+        radio: DiskConfig {
             range: Positive::new(RANGE_M),
             loss: LossConfig::Bernoulli(Probability::new(LOSS_PROBABILITY)),
             latency: LatencyConfig::Normal {
@@ -67,7 +67,7 @@ fn setup(workload: &Workload) -> Setup {
                 std_dev: NonNegative::new(LATENCY_STD_DEV_S),
                 min: NonNegative::new(LATENCY_MIN_S),
             },
-            ..RadioConfig::default()
+            ..DiskConfig::default()
         },
         // Connectivity is no part of the workload.
         metrics: MetricsConfig {

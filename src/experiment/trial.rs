@@ -1,11 +1,15 @@
 //! From a scenario to the record of one of its trials.
 
+use std::sync::Arc;
+
 use tokio_util::sync::CancellationToken;
 
 use crate::engine::{ActorId, Span};
 use crate::kind::{Start, Swarm, TrialError};
 use crate::metrics::TrialRecord;
 use crate::motion::deploy;
+use crate::radio::RadioKind;
+use crate::radio::Reach;
 use crate::scenario::Scenario;
 use crate::simulation::{DriverKind, Setup};
 use crate::spool::Scratch;
@@ -59,6 +63,12 @@ pub fn trace_trial(
     run(setup, scenario, DriverKind::Inline, stop)
 }
 
+/// Who was in range of whom in a trial, from where robots were: what its record's links are.
+#[must_use]
+pub fn reach(scenario: &Scenario, trial: u32) -> Reach {
+    setup(scenario, trial).reach(scenario.swarm.robots as usize)
+}
+
 fn run(
     setup: Setup,
     scenario: &Scenario,
@@ -96,8 +106,11 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         arena: scenario.arena.clone(),
         motion: scenario.motion.clone(),
         control: scenario.control.clone(),
-        radio: scenario.radio.clone(),
-        own_radio: None,
+        radio: scenario.radio.disk().into_owned(),
+        own_radio: scenario
+            .radio
+            .shared()
+            .map(|shared| Arc::new(shared.clone()) as Arc<dyn RadioKind>),
         piggyback: scenario.gossip.piggyback,
         faults: scenario.faults.clone(),
         metrics: scenario.metrics.clone(),

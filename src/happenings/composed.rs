@@ -6,12 +6,17 @@ use crate::faults::Change;
 use crate::geometry::Vec2;
 use crate::motion::World;
 use crate::protocol::{Input, Note, Output, Topic};
-use crate::radio::LossCause;
+use crate::radio::{Account, Conclusion, FrameId, LossCause, Reading};
 
 /// The methods of an observer that hands on what it is told: `$tell!` says to whom. What is told of every copy is always inlined: else
 /// the copy would be written to memory, for nobody.
 macro_rules! hand_on {
     ($tell:ident) => {
+        #[inline]
+        fn begin(&mut self, world: &World) {
+            $tell!(self, begin(world));
+        }
+
         #[inline]
         fn woke<H, M>(&mut self, now: SimTime, robot: ActorId, input: &Input<H>, output: &Output<M>) {
             $tell!(self, woke(now, robot, input, output));
@@ -53,6 +58,21 @@ macro_rules! hand_on {
         #[inline]
         fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
             $tell!(self, in_flight(copy, at));
+        }
+
+        #[inline]
+        fn concluded(&mut self, conclusion: &Conclusion) {
+            $tell!(self, concluded(conclusion));
+        }
+
+        #[inline]
+        fn measured(&mut self, now: SimTime, frame: FrameId, reading: &Reading) {
+            $tell!(self, measured(now, frame, reading));
+        }
+
+        #[inline]
+        fn accounted(&mut self, robot: ActorId, account: &Account) {
+            $tell!(self, accounted(robot, account));
         }
 
         #[inline]

@@ -16,6 +16,7 @@
 pub mod backbone;
 pub mod heartbeat;
 pub mod rumor;
+pub mod traffic;
 
 use std::sync::{LazyLock, PoisonError, RwLock};
 
@@ -29,11 +30,12 @@ struct Registry {
 
 static REGISTRY: LazyLock<RwLock<Registry>> = LazyLock::new(|| RwLock::new(Registry::of(shipped().to_vec())));
 
-fn shipped() -> [Entry; 3] {
+fn shipped() -> [Entry; 4] {
     [
         Entry::of::<backbone::BackboneConfig>(),
         Entry::of::<heartbeat::HeartbeatConfig>(),
         Entry::of::<rumor::RumorConfig>(),
+        Entry::of::<traffic::TrafficConfig>(),
     ]
 }
 

@@ -88,6 +88,12 @@ impl NotedFigure {
         Self::of(key, name, "Hz", Reading::PerSecond(counted))
     }
 
+    /// The same figure in another unit, such as `bit/s` for what is counted in bits.
+    #[must_use]
+    pub const fn in_unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
     const fn of(key: &'static str, name: &'static str, unit: &'static str, reading: Reading) -> Self {
         Self {
             key,

@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Vec2};
+use crate::radio::Reach;
 use crate::spool::{Entry, Spool, Spooled, entry};
 
 use super::detection::{DetectionRecord, ObservedFailure, StatusTrace, Suspicion};
@@ -128,6 +129,20 @@ impl TrialRecord {
         robots.sort_unstable();
         robots.dedup();
         robots
+    }
+
+    /// The places at the end of every two robots that hear each other as `reach` says.
+    pub fn links_at_end(&self, reach: &Reach) -> impl Iterator<Item = (Vec2, Vec2)> {
+        let robots = || {
+            (0..)
+                .map(ActorId)
+                .zip(self.robots.iter().map(|robot| robot.pose.position))
+        };
+        robots().flat_map(move |robot| {
+            let others = robots().skip(robot.0.index() + 1);
+            let linked = others.filter(move |other| reach.linked(robot, *other));
+            linked.map(move |other| (robot.1, other.1))
+        })
     }
 
     /// Robots that ended in another role than the one that all start in: those that the mission took. `None` where

@@ -18,7 +18,7 @@ pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
 }
 
 fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static str> {
-    let radio = &scene.scenario.radio;
+    let radio = scene.scenario.radio.disk();
     if let Some(why) = scene.unsteady() {
         return Err(why);
     }
@@ -123,7 +123,7 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
 
 /// The detector, where its closed forms are known.
 fn detector(scene: &Scene<'_>) -> Result<Timeout, &'static str> {
-    let latency = &scene.scenario.radio.latency;
+    let latency = &scene.scenario.radio.disk().latency;
     let detector = &scene.scenario.detector;
     let silence = detector.usual_silence(scene.scenario.circumstances()).as_secs();
     match detector {
@@ -149,7 +149,7 @@ struct Model {
 
 impl Model {
     fn of(scene: &Scene<'_>) -> Self {
-        let (rate, duration) = match scene.scenario.radio.loss {
+        let (rate, duration) = match scene.scenario.radio.disk().loss {
             LossConfig::None | LossConfig::Bernoulli(_) => ("(1−p) pᵐ / η, m = ⌊TO/η⌋", "(m + 1/(1−p)) η − TO"),
             LossConfig::GilbertElliott { .. } => (
                 "r p (1−r)^(m−1) / (η(p+r)) if simple; else summed over states",
@@ -160,7 +160,7 @@ impl Model {
                 "(m + 1/(1−p)) η − TO, averaged over mistakes",
             ),
         };
-        let bursts = matches!(scene.scenario.radio.loss, LossConfig::GilbertElliott { .. });
+        let bursts = matches!(scene.scenario.radio.disk().loss, LossConfig::GilbertElliott { .. });
         let still = scene.stands_still();
         let (holds, caveat) = match (still, bursts && !scene.sends_statuses_alone()) {
             (true, false) => (Holds::Throughout, ""),
@@ -183,7 +183,7 @@ impl Model {
 /// The share by which the ends of a run change the number of mistakes: what begins within a timeout of its end is none yet,
 /// and a link is watched from an arrival on, which is an arrival more than its share.
 fn ends(scene: &Scene<'_>, silence: f64) -> f64 {
-    let radio = &scene.scenario.radio;
+    let radio = scene.scenario.radio.disk();
     let chain = radio.loss.chain(radio.range.get(), radio.range.get());
     let (arriving, memory) = (chain.arriving(), chain.memory());
     let first = (1.0 + (1.0 - arriving) * memory / (1.0 - memory)) / arriving;

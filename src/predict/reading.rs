@@ -89,7 +89,7 @@ fn between(least: f64, most: f64) -> Reading {
 
 /// Until the next control step, where all robots take theirs at once: sent at one and read at another.
 fn at_next_step(scene: &Scene<'_>, period: f64) -> f64 {
-    let latencies = scene.scenario.radio.latency.quantiles(QUANTILES);
+    let latencies = scene.scenario.radio.disk().latency.quantiles(QUANTILES);
     let waits = latencies.iter().map(|latency| {
         let steps = (latency / period - 1e-9).ceil().max(1.0);
         steps * period - latency

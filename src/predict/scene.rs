@@ -89,7 +89,7 @@ impl<'a> Scene<'a> {
 
     /// Bytes of a status, headers included.
     pub fn status_bytes(&self) -> f64 {
-        let radio = &self.scenario.radio;
+        let radio = self.scenario.radio.disk();
         let payload = self.scenario.protocol.status_bytes().unwrap_or(0.0);
         payload + f64::from(radio.frame_header_bytes) + f64::from(radio.message_header_bytes)
     }
@@ -98,7 +98,7 @@ impl<'a> Scene<'a> {
     pub fn shared_bytes(&self) -> f64 {
         let shared = self.scenario.gossip.piggyback && !self.sends_statuses_alone();
         if shared {
-            f64::from(self.scenario.radio.frame_header_bytes)
+            f64::from(self.scenario.radio.disk().frame_header_bytes)
         } else {
             0.0
         }
@@ -107,7 +107,7 @@ impl<'a> Scene<'a> {
     /// The means of figures of the distance over the neighbours at the start; the figures themselves where they do not depend on
     /// it. `None` if distances are not known, or nobody has a neighbour.
     pub fn mean_over_neighbours<const N: usize>(&self, figures: impl Fn(f64) -> [f64; N]) -> Option<[f64; N]> {
-        let range = self.scenario.radio.range.get();
+        let range = self.scenario.radio.disk().range.get();
         if !self.depends_on_distance() {
             return Some(figures(range));
         }
@@ -131,12 +131,12 @@ impl<'a> Scene<'a> {
 
     /// Whether copies to near robots are lost less often than those to far ones.
     pub fn depends_on_distance(&self) -> bool {
-        matches!(self.scenario.radio.loss, LossConfig::Distance { .. })
+        matches!(self.scenario.radio.disk().loss, LossConfig::Distance { .. })
     }
 
     /// The share of copies lost in the channel, over the neighbours at the start.
     pub fn loss_ratio(&self) -> Option<f64> {
-        let radio = &self.scenario.radio;
+        let radio = self.scenario.radio.disk();
         let loss = |distance| radio.loss.mean_loss(distance, radio.range.get());
         self.mean_over_neighbours(|distance| [loss(distance)])
             .map(|[loss]| loss)

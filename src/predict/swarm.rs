@@ -9,7 +9,7 @@ const NEIGHBOURS: &str = "neighbours";
 pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
     match &scene.spacing {
         Ok(spacing) => {
-            let range = scene.scenario.radio.range.get();
+            let range = scene.scenario.radio.disk().range.get();
             let value = spacing.neighbours(range);
             let (formula, assumes) = law(&scene.scenario.swarm.deploy);
             preflight.predictions.push(Prediction {

@@ -33,7 +33,7 @@ fn loss(scene: &Scene<'_>, preflight: &mut Preflight) {
         let why = "it depends on the distances of neighbours, which are not known";
         return preflight.refuse("loss_ratio", LOST, why);
     };
-    let (formula, assumes) = match scene.scenario.radio.loss {
+    let (formula, assumes) = match scene.scenario.radio.disk().loss {
         LossConfig::None => ("0", "every frame arrives"),
         LossConfig::Bernoulli(_) => ("p", "the channel alone: no fault of a link or a receiver"),
         LossConfig::GilbertElliott { .. } => (
@@ -64,7 +64,7 @@ fn loss(scene: &Scene<'_>, preflight: &mut Preflight) {
 }
 
 fn latency(scene: &Scene<'_>, preflight: &mut Preflight) {
-    let value = scene.scenario.radio.latency.mean();
+    let value = scene.scenario.radio.disk().latency.mean();
     preflight.predictions.push(Prediction {
         name: "latency_s",
         what: "mean latency",
@@ -129,7 +129,7 @@ fn received(scene: &Scene<'_>, preflight: &mut Preflight) {
         Holds::AtStart
     };
     let end = scene.interval_s() / scene.duration_s;
-    let latency = scene.scenario.radio.latency.mean() / scene.duration_s;
+    let latency = scene.scenario.radio.disk().latency.mean() / scene.duration_s;
     let sent = scene.status_bytes() / scene.steps_a_status();
     let shared = scene.shared_bytes() / scene.steps_a_status();
     preflight.predictions.push(Prediction {

@@ -51,6 +51,9 @@ pub struct Input<M> {
     pub wake: Wake,
     /// The frames that arrived since it last woke, in order of arrival.
     pub inbox: Vec<Reception<M>>,
+    /// With what power each frame of the inbox arrived, dBm, over a radio that knows powers; else empty. [`receptions`](Self::receptions) has
+    /// both together.
+    pub powers: Vec<f32>,
     /// What became of frames of its own since it last woke, in order of time; empty unless its protocol
     /// [heeds](super::Protocol::HEEDS_OUTCOMES) that.
     pub outcomes: Vec<Concluded>,
@@ -62,6 +65,14 @@ pub struct Input<M> {
     /// Randomness for this wake alone, whatever was drawn before: the draws of a robot's n-th wake are the same in each run of a trial. The
     /// traits of the crate `rand` draw from it.
     pub random: Philox,
+}
+
+impl<M> Input<M> {
+    /// The frames of the inbox, each with the power with which it arrived, dBm, if the radio knows powers.
+    pub fn receptions(&self) -> impl Iterator<Item = (&Reception<M>, Option<f32>)> {
+        let powers = self.powers.iter().copied().map(Some).chain(std::iter::repeat(None));
+        self.inbox.iter().zip(powers)
+    }
 }
 
 /// A frame of its own that its radio is done with, as a robot learns of it.

@@ -68,6 +68,13 @@ impl RadioConfig {
         self.shared().is_some_and(SharedConfig::takes_time)
     }
 
+    /// How many frames with so much payload a robot can put on air in a second that has it for itself, roughly; over a disk, where they take no time, none is
+    /// counted.
+    #[must_use]
+    pub fn most_frames_a_second(&self, payload: u32) -> f64 {
+        self.shared().map_or(0.0, |shared| shared.most_frames_a_second(payload))
+    }
+
     /// What is wrong between fields that are each in range, for a swarm of so many robots: the path of the field at fault, from this section on, and
     /// what is wrong with it and would be right. Empty if the radio can be built.
     #[must_use]

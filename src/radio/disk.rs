@@ -1,12 +1,14 @@
 //! The disk radio: whoever is within its range hears, but for what the channel drops. The instant case of a medium.
 
 use super::LossCause;
-use super::config::RadioConfig;
-use super::draw::{CHANNEL, FrameCopy, LatencyBits};
+use super::disk_config::DiskConfig;
+use super::draw::{CHANNEL, FrameCopy, LatencyBits, unit_interval};
 use super::latency::Latency;
 use super::loss::Loss;
 use super::medium::{Fate, Fates, Listener, Medium, RadioKind, Transmission};
+use super::reach::Reach;
 use super::sensing::Sensing;
+use super::site::{Places, RadioSite};
 use crate::engine::{KeyedStreams, SimTime, Span, Streams};
 
 /// The disk radio of one run. Its frames take no time on air and do not meet: the fate of each copy is settled when its frame is handed over.
@@ -23,22 +25,22 @@ pub struct Disk {
     met: Vec<[u64; 2]>,
 }
 
-impl RadioKind for RadioConfig {
-    fn medium(&self, streams: &Streams, robots: usize) -> Box<dyn Medium> {
-        Box::new(Disk::new(self, streams, robots))
+impl RadioKind for DiskConfig {
+    fn medium(&self, site: &RadioSite) -> Box<dyn Medium> {
+        Box::new(Disk::new(self, &site.streams, site.robots))
     }
 }
 
 impl Medium for Disk {
-    fn range(&self) -> f64 {
-        self.range
+    fn reach(&self) -> Reach {
+        Reach::Disk(self.range)
     }
 
     fn lookahead(&self) -> Span {
         self.latency.least()
     }
 
-    fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+    fn transmit(&mut self, frame: &Transmission<'_>, _: &dyn Places, fates: &mut Fates) {
         let copies = frame.listeners.iter().map(|&listener| {
             let copy = FrameCopy {
                 sender: frame.frame.sender,
@@ -69,9 +71,9 @@ impl Disk {
     /// The radio that `config` describes, for robots 0 to `robots` − 1, drawing from the `streams` of their trial.
     ///
     /// # Panics
-    /// If `config` has [`problems`](RadioConfig::problems): a scenario is checked before it is run.
+    /// If `config` has [`problems`](DiskConfig::problems): a scenario is checked before it is run.
     #[must_use]
-    pub fn new(config: &RadioConfig, streams: &Streams, robots: usize) -> Self {
+    pub fn new(config: &DiskConfig, streams: &Streams, robots: usize) -> Self {
         let problems = config.problems();
         assert!(
             problems.is_empty(),
@@ -112,13 +114,6 @@ impl Disk {
     }
 }
 
-/// 64 random bits as a number in [0, 1), on a grid of 2⁻⁵³: below 1, so that a probability of 1 always happens, and not
-/// below 0, so that one of 0 never does.
-#[inline]
-fn unit_interval(bits: u64) -> f64 {
-    (bits >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -139,7 +134,7 @@ mod tests {
     }
 
     /// Radios with each loss model, random latency and noise.
-    fn radios() -> impl Strategy<Value = RadioConfig> {
+    fn radios() -> impl Strategy<Value = DiskConfig> {
         let probability = Probability::new;
         let losses = prop::sample::select(vec![
             LossConfig::None,
@@ -155,7 +150,7 @@ mod tests {
                 exponent: Positive::new(1.5),
             },
         ]);
-        losses.prop_map(|loss| RadioConfig {
+        losses.prop_map(|loss| DiskConfig {
             loss,
             latency: LatencyConfig::Normal {
                 mean: NonNegative::new(0.01),
@@ -166,11 +161,11 @@ mod tests {
                 range_noise: NonNegative::new(0.1),
                 bearing_noise: NonNegative::new(5.0),
             },
-            ..RadioConfig::default()
+            ..DiskConfig::default()
         })
     }
 
-    fn disk(config: &RadioConfig) -> Disk {
+    fn disk(config: &DiskConfig) -> Disk {
         Disk::new(config, &Streams::new(3, 1), ROBOTS as usize)
     }
 
@@ -186,13 +181,13 @@ mod tests {
             listeners: &listeners,
         };
         let mut fates = Fates::default();
-        disk.transmit(&frame, &mut fates);
+        disk.transmit(&frame, &Vec::new(), &mut fates);
         fates.drain().map(|(id, fate)| (id.0, fate)).collect()
     }
 
     #[test]
     fn a_perfect_radio_delivers_after_its_constant_latency_with_the_true_displacement() {
-        let fates = transmit(&mut disk(&RadioConfig::default()), 0, &[10]);
+        let fates = transmit(&mut disk(&DiskConfig::default()), 0, &[10]);
         let arrival = Fate::Arrives {
             at: SimTime::from_secs(1.1),
             displacement: [0.5, -0.5],
@@ -208,9 +203,9 @@ mod tests {
             std_dev: NonNegative::new(0.001),
             min: NonNegative::new(1.0),
         };
-        let _ = disk(&RadioConfig {
+        let _ = disk(&DiskConfig {
             latency,
-            ..RadioConfig::default()
+            ..DiskConfig::default()
         });
     }
 

@@ -112,3 +112,10 @@ impl TryRng for LatencyBits {
         Ok(())
     }
 }
+
+/// 64 random bits as a number in [0, 1), on a grid of 2⁻⁵³: below 1, so that a probability of 1 always happens, and not
+/// below 0, so that one of 0 never does.
+#[inline]
+pub(in crate::radio) fn unit_interval(bits: u64) -> f64 {
+    (bits >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+}

@@ -2,7 +2,7 @@
 
 use rand_distr::{Distribution, Exp1, Gamma, StandardNormal, StandardUniform};
 
-use super::config::LatencyConfig;
+use super::disk_config::LatencyConfig;
 use super::draw::LatencyBits;
 use crate::engine::Span;
 

@@ -2,7 +2,7 @@
 
 use statrs::distribution::{ContinuousCDF, Gamma, Normal};
 
-use super::config::{LatencyConfig, LossConfig};
+use super::disk_config::{LatencyConfig, LossConfig};
 
 /// Shape of a gamma law from which on its quantiles are those of a cube.
 const CUBES: f64 = 1e5;

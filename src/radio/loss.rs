@@ -1,6 +1,6 @@
 //! How likely the channel is to drop a copy.
 
-use super::config::LossConfig;
+use super::disk_config::LossConfig;
 use super::draw::FrameCopy;
 use super::gilbert::GilbertElliott;
 use crate::engine::Streams;

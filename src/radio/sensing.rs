@@ -2,7 +2,7 @@
 
 use rand_distr::{Distribution, StandardNormal};
 
-use super::config::SensingConfig;
+use super::disk_config::SensingConfig;
 use super::draw::FrameCopy;
 use crate::engine::{KeyedStreams, Purpose, Streams};
 use crate::geometry::{Vec2, unit};

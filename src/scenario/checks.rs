@@ -85,7 +85,7 @@ fn sections(scenario: &Scenario) -> Vec<Problem> {
     let sections: [(_, _, &[&str]); 7] = [
         ("arena", arena.problems(), &[]),
         ("motion", motion.problems(), &[]),
-        ("radio", radio.problems(), &[]),
+        ("radio", radio.problems(swarm.robots), &[]),
         ("swarm.deploy", deploy, &around),
         ("protocol", protocol, &["swarm.robots", "radio.range"]),
         ("detector", detector.problems(), &[]),

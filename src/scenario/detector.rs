@@ -52,7 +52,7 @@ fn pauses(scenario: &Scenario) -> Option<Problem> {
 
 /// A status must arrive before its freshness point.
 fn freshness(scenario: &Scenario, nfd_s: &NfdSConfig) -> Option<Problem> {
-    let (shift, latency) = (nfd_s.shift.get(), scenario.radio.latency.mean());
+    let (shift, latency) = (nfd_s.shift.get(), scenario.radio.disk().latency.mean());
     (latency >= shift).then(|| {
         let message = format!(
             "most statuses would come too late to count: they take {latency} s on average, and count {shift} s after they were sent"
@@ -68,7 +68,7 @@ fn answers(scenario: &Scenario, swim: &SwimConfig) -> Option<Problem> {
         WakeConfig::ControlStep => scenario.control.period.get(),
         WakeConfig::OnReception => 0.0,
     };
-    let latency = scenario.radio.latency.mean();
+    let latency = scenario.radio.disk().latency.mean();
     let (interval, timeout) = (swim.probe_interval.get(), swim.probe_timeout.get());
     let direct = in_micros(period + 2.0 * latency);
     let through_others = in_micros(3.0 * period + 4.0 * latency);

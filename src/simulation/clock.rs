@@ -59,6 +59,8 @@ impl ControlSteps {
 pub struct Alarms {
     timers: Vec<(TimerId, SimTime)>,
     arrival: SimTime,
+    /// Since when there is something for it to learn of its own frames; `NEVER` if there is not.
+    told: SimTime,
     asleep: bool,
 }
 
@@ -67,6 +69,7 @@ impl Default for Alarms {
         Self {
             timers: Vec::new(),
             arrival: SimTime::NEVER,
+            told: SimTime::NEVER,
             asleep: false,
         }
     }
@@ -79,13 +82,15 @@ impl Alarms {
             return SimTime::NEVER;
         }
         let timer = self.timers.iter().map(|timer| timer.1).min();
-        self.arrival.min(timer.unwrap_or(SimTime::NEVER))
+        let told = self.told.min(self.arrival);
+        told.min(timer.unwrap_or(SimTime::NEVER))
     }
 
-    /// Takes the alarm for which the robot wakes at `now`: a timer before an arrival.
+    /// Takes the alarm for which the robot wakes at `now`: a timer before what became of its frames, and that before an arrival.
     pub fn take_due(&mut self, now: SimTime) -> Wake {
         match self.timers.iter().position(|timer| timer.1 <= now) {
             Some(due) => Wake::Timer(self.timers.swap_remove(due).0),
+            None if self.told <= now => Wake::Sent,
             None => Wake::Reception,
         }
     }
@@ -115,6 +120,16 @@ impl Alarms {
     /// Wakes the robot at the arrival `at`, if that is its next; `NEVER` for none.
     pub fn set_arrival(&mut self, at: SimTime) {
         self.arrival = at;
+    }
+
+    /// There is something for the robot to learn of its own frames, from `at` on.
+    pub fn tell(&mut self, at: SimTime) {
+        self.told = self.told.min(at);
+    }
+
+    /// It has learnt all.
+    pub fn learn(&mut self) {
+        self.told = SimTime::NEVER;
     }
 
     /// The arrival for which the robot will wake.

@@ -24,6 +24,7 @@ impl Digest {
             Wake::ControlStep => 0,
             Wake::Timer(id) => 1 + u64::from(id.0),
             Wake::Reception => u64::MAX,
+            Wake::Sent => u64::MAX - 1,
         };
         let velocity = output
             .velocity

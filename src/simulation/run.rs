@@ -90,6 +90,7 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>, O: Observer> {
     pub(super) answers: VecDeque<Box<JobFor<P>>>,
     pub(super) spare_jobs: Jobs<P>,
     pub(super) reached: Vec<ActorId>,
+    pub(super) told: Vec<(ActorId, SimTime)>,
     /// Whether memory is asked for before it is needed.
     pub(super) prefetches: bool,
     positions: Vec<Vec2>,
@@ -139,6 +140,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
             answers: VecDeque::new(),
             spare_jobs: Vec::new(),
             reached: Vec::new(),
+            told: Vec::new(),
             prefetches: outgrows_cache(first_steps.len()),
             positions: Vec::new(),
             events: 0,
@@ -149,6 +151,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
     /// Runs to the end and returns what is left.
     pub async fn until_end(mut self, stop: &CancellationToken) -> Result<Ended<P, O>, RunError> {
         let mut end = self.rhythm.time_limit;
+        self.observer.begin(&self.world);
         self.plan_radio();
         loop {
             let (event, now) = self.next_event();
@@ -170,9 +173,10 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
                 }
                 Event::Fault => self.suffer(now),
                 Event::Radio => {
-                    self.air.advance(now, &mut self.observer);
+                    self.air.advance(now, &self.world, &mut self.observer);
                     self.plan_radio();
                     self.wake_reached();
+                    self.wake_told();
                 }
                 Event::Sample => {
                     self.locate(now);
@@ -221,7 +225,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
 
     /// From `now` on `robot` can do what its `health` allows.
     fn ail(&mut self, now: SimTime, robot: ActorId, health: Health) {
-        self.air.set_health(now, robot, health, &mut self.observer);
+        self.air.set_health(now, robot, health, &self.world, &mut self.observer);
         let alarms = &mut self.alarms[robot.index()];
         if self.rhythm.wake_on_reception {
             alarms.set_arrival(self.air.next_arrival(robot));

@@ -8,6 +8,7 @@ use tokio_util::sync::CancellationToken;
 use super::air::Air;
 use super::digest::Digest;
 use super::error::RunError;
+use super::places::site;
 use super::run::{Ended, Rhythm, Run};
 use crate::engine::{ActorId, Actors, Driver, Inline, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
@@ -19,7 +20,7 @@ use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm as Repeated, WakeConfig};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::{CompletionConfig, Protocol, Robot, Start};
-use crate::radio::{Medium, RadioConfig, RadioKind};
+use crate::radio::{DiskConfig, Medium, RadioKind, Reach};
 use crate::spool::Scratch;
 
 /// How robots are run. Both give the same results, byte for byte.
@@ -63,8 +64,8 @@ pub struct Setup {
     pub motion: MotionConfig,
     /// When robots wake.
     pub control: ControlConfig,
-    /// The radio.
-    pub radio: RadioConfig,
+    /// The disk radio.
+    pub radio: DiskConfig,
     /// A radio of the program's own, in place of the disk radio: then nothing of `radio` counts but the bytes of headers.
     pub own_radio: Option<Arc<dyn RadioKind>>,
     /// Whether all messages of a wake go out in one frame.
@@ -104,6 +105,15 @@ impl Setup {
     #[must_use]
     pub fn streams(&self) -> Streams {
         Streams::new(self.seed, self.trial)
+    }
+
+    /// Who is in range of whom in a run of so many robots.
+    ///
+    /// # Panics
+    /// If the radio's config has problems: a scenario is checked before it is run.
+    #[must_use]
+    pub fn reach(&self, robots: usize) -> Reach {
+        self.medium(robots).reach()
     }
 
     /// Puts `robots` at `poses`, in order of their numbers, and runs them to the end, or until `stop` is cancelled.
@@ -152,7 +162,7 @@ impl Setup {
         };
         let robots = robots.into_iter().zip(0..).map(started).collect();
         let medium = self.medium(swarm);
-        let recorder = Recorder::new(self.layout::<P>(swarm, medium.range()), &self.metrics);
+        let recorder = Recorder::new(self.layout::<P>(swarm, medium.reach()), &self.metrics);
         let books = (recorder, Digest::new());
         let run = async {
             match (self.trace.zip(P::STATUS), driver) {
@@ -200,9 +210,15 @@ impl Setup {
         let streams = self.streams();
         let robots = poses.len();
         let first_steps = self.first_steps(robots, streams);
-        let world = World::new(&self.motion, &self.arena, poses, medium.range());
+        let world = World::new(&self.motion, &self.arena, poses, medium.reach().farthest());
         let rhythm = self.rhythm();
-        let air = Air::<P>::new(medium, robots, self.headers(), self.piggyback, rhythm.wake_on_reception);
+        let air = Air::<P>::new(
+            medium,
+            robots,
+            self.headers::<P>(),
+            self.piggyback,
+            rhythm.wake_on_reception,
+        );
         let faults = Faults::new(&self.faults, P::ROLES, robots, rhythm.control_period, streams);
         let run = Run::new(rhythm, driver, world, air, faults, observer, streams, &first_steps);
         run.until_end(stop).await
@@ -240,17 +256,20 @@ impl Setup {
     /// The radio of this run.
     fn medium(&self, robots: usize) -> Box<dyn Medium> {
         let radio = self.own_radio.as_deref().unwrap_or(&self.radio);
-        radio.medium(&self.streams(), robots)
+        let body_radius = self.motion.body_radius.get();
+        radio.medium(&site(self.streams(), robots, &self.arena, body_radius))
     }
 
-    fn headers(&self) -> HeaderBytes {
-        HeaderBytes {
-            frame: self.radio.frame_header_bytes,
-            message: self.radio.message_header_bytes,
-        }
+    fn headers<P: Protocol>(&self) -> HeaderBytes {
+        let topics = P::topics(&self.detector).len();
+        let own = self.own_radio.as_ref();
+        let [frame, message] = own
+            .and_then(|radio| radio.header_bytes(topics, self.piggyback))
+            .unwrap_or([self.radio.frame_header_bytes, self.radio.message_header_bytes]);
+        HeaderBytes { frame, message }
     }
 
-    fn layout<P: Protocol>(&self, robots: usize, radio_range: f64) -> Layout {
+    fn layout<P: Protocol>(&self, robots: usize, reach: Reach) -> Layout {
         let circumstances = Circumstances {
             robots,
             status_interval: self.status_interval,
@@ -259,8 +278,8 @@ impl Setup {
             robots,
             topics: P::topics(&self.detector).len(),
             roles: P::ROLES.len(),
-            headers: self.headers(),
-            radio_range,
+            headers: self.headers::<P>(),
+            reach,
             control_period: self.control.period(),
             mission: self.mission.clone(),
             rumors: self.rumors,

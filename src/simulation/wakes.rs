@@ -44,6 +44,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
         }
         self.batch = answers;
         self.wake_reached();
+        self.wake_told();
         Ok(())
     }
 
@@ -58,6 +59,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
             self.settle(job)?;
         }
         self.wake_reached();
+        self.wake_told();
         Ok(())
     }
 
@@ -143,6 +145,8 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
                     me: robot,
                     wake,
                     inbox: Vec::new(),
+                    powers: Vec::new(),
+                    outcomes: Vec::new(),
                     pose,
                     proximity: Vec::new(),
                     random: random.clone(),
@@ -161,7 +165,14 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
         if P::SENSES_PROXIMITY && wake == Wake::ControlStep {
             self.world.proximity(robot, now, &mut input.proximity);
         }
-        self.air.deliver(now, robot, &mut input.inbox, &mut self.observer);
+        input.powers.clear();
+        let Input { inbox, powers, .. } = input;
+        self.air.deliver(now, robot, inbox, powers, &mut self.observer);
+        if P::HEEDS_OUTCOMES {
+            input.outcomes.clear();
+            self.air.take_outcomes(robot, &mut input.outcomes);
+            self.alarms[index].learn();
+        }
         if self.rhythm.wake_on_reception {
             self.alarms[index].set_arrival(self.air.next_arrival(robot));
         }
@@ -204,7 +215,10 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
         if let Some(velocity) = output.velocity {
             self.world.command(robot, velocity);
         }
-        if output.says() && self.faults.health(robot).sends {
+        if output.says() && !self.faults.health(robot).sends {
+            self.air
+                .refuse(now, robot, output.broadcasts.len() + output.sends.len());
+        } else if output.says() {
             let place = Surroundings {
                 world: &self.world,
                 faults: &self.faults,
@@ -232,6 +246,20 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
             }
             next => self.queue.schedule(event, next),
         }
+    }
+
+    /// Wakes robots that are to learn of frames of their own.
+    pub(super) fn wake_told(&mut self) {
+        if !P::HEEDS_OUTCOMES {
+            return;
+        }
+        let mut told = std::mem::take(&mut self.told);
+        self.air.take_told(&mut told);
+        for (robot, at) in told.drain(..) {
+            self.alarms[robot.index()].tell(at);
+            self.set_alarm(robot);
+        }
+        self.told = told;
     }
 
     /// Brings forward the wakes of robots that frames were just found to reach.

@@ -221,10 +221,12 @@ impl<P: Protocol> Solo<P> {
             me: self.me,
             wake,
             inbox: std::mem::take(&mut self.inbox),
+            powers: Vec::new(),
+            outcomes: Vec::new(),
             pose: self.pose,
             proximity: match wake {
                 Wake::ControlStep => self.proximity.clone(),
-                Wake::Timer(_) | Wake::Reception => Vec::new(),
+                Wake::Timer(_) | Wake::Reception | Wake::Sent => Vec::new(),
             },
             random: self.random.at(self.me.0, 0, self.wakes),
         };

@@ -70,7 +70,7 @@ impl Kind for BackboneConfig {
     }
 
     fn problems(&self, sections: &Sections<'_>) -> Vec<(String, String)> {
-        self.own_problems(sections.robots, sections.radio.range.get())
+        self.own_problems(sections.robots, sections.radio.disk().range.get())
     }
 
     fn conflicts(&self, sections: &Sections<'_>) -> Vec<Problem> {

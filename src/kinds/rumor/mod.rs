@@ -283,7 +283,7 @@ impl Protocol for Rumor {
                 self.round(&mut output.broadcasts);
                 self.set_timer(now, output);
             }
-            Wake::Reception => {}
+            Wake::Reception | Wake::Sent => {}
         }
         // After the duplicates, which it heard in the role that it had.
         if self.known != knew && self.known.count_ones() as usize == self.settings.sources.len() {

@@ -95,7 +95,9 @@ impl TrafficConfig {
 
     /// How many robots send.
     fn sending(&self, robots: u32) -> f64 {
-        (0..robots).filter(|robot| self.to(ActorId(*robot), robots).is_some()).count() as f64
+        (0..robots)
+            .filter(|robot| self.to(ActorId(*robot), robots).is_some())
+            .count() as f64
     }
 }
 
@@ -119,7 +121,12 @@ impl Kind for TrafficConfig {
     fn problems(&self, sections: &Sections<'_>) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let robots = sections.robots;
-        let absent = |robot: u32| format!("there is no robot {robot}: the swarm has robots 0 to {}", robots.saturating_sub(1));
+        let absent = |robot: u32| {
+            format!(
+                "there is no robot {robot}: the swarm has robots 0 to {}",
+                robots.saturating_sub(1)
+            )
+        };
         if let Senders::Given(senders) = &self.senders {
             for (place, &robot) in senders.iter().enumerate().filter(|(_, robot)| **robot >= robots) {
                 found.push((format!("senders[{place}]"), absent(robot)));

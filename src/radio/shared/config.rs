@@ -16,12 +16,12 @@ use super::receiver::{Receiver, milliwatts};
 use super::station::Radio;
 use super::{Shared, link, range};
 use crate::engine::{Purpose, Span, Streams};
-use crate::quantity::{Finite, NonNegative};
-use crate::radio::RadioSite;
+use crate::quantity::{Finite, NonNegative, Positive};
 use crate::radio::disk_config::{DiskConfig, LatencyConfig, LossConfig, SensingConfig, WallsConfig};
 use crate::radio::propagation::{Fading, FadingConfig, PathLoss, PathLossConfig, Shadowing, ShadowingConfig, Walls};
 use crate::radio::sensing::Sensing;
 use crate::radio::technology::{Phy, TechnologyConfig};
+use crate::radio::{Links, Obstacle, RadioSite};
 
 /// The shared radio: a technology, how signals spread, and how robots get at the medium. What is `None` is as the technology has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -154,6 +154,9 @@ const fn twenty() -> u16 {
     20
 }
 
+/// Where in its round of channels each receiver begins.
+const SCANS: Purpose = Purpose::new("radio.scans");
+
 const POWERS: Purpose = Purpose::new("radio.powers");
 
 /// Where there is no noise, what is left out is what is so many dB below the sensitivity, whatever `negligible` says more.
@@ -187,7 +190,9 @@ impl SharedConfig {
     /// How robots get at the medium.
     #[must_use]
     pub fn access(&self) -> AccessConfig {
-        self.access.clone().unwrap_or_else(|| AccessConfig::of(&self.technology))
+        self.access
+            .clone()
+            .unwrap_or_else(|| AccessConfig::of(&self.technology))
     }
 
     /// The radio that each robot has.
@@ -261,7 +266,10 @@ impl SharedConfig {
         let strongest = |levels: &[f64]| levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         LinkBudget {
             path: PathLoss::new(&self.path_loss, phy.frequency),
-            shadowing: self.shadowing.as_ref().map(|config| Shadowing::new(config, &site.streams)),
+            shadowing: self
+                .shadowing
+                .as_ref()
+                .map(|config| Shadowing::new(config, &site.streams)),
             fading,
             walls: self.walls(phy, site),
             strongest: strongest(&spread.0),
@@ -269,8 +277,16 @@ impl SharedConfig {
             sends: spread.0,
             gains: spread.1,
             infrared: phy.infrared.map(|infrared| infrared.range_m),
-            threshold: if phy.infrared.is_some() { link::UNSEEN_DBM } else { threshold },
-            floor: if phy.infrared.is_some() { link::UNSEEN_DBM } else { noise - self.negligible.get() },
+            threshold: if phy.infrared.is_some() {
+                link::UNSEEN_DBM
+            } else {
+                threshold
+            },
+            floor: if phy.infrared.is_some() {
+                link::UNSEEN_DBM
+            } else {
+                noise - self.negligible.get()
+            },
             sigma,
         }
     }
@@ -355,7 +371,10 @@ impl Shared {
     #[must_use]
     pub fn new(config: &SharedConfig, site: &RadioSite) -> Self {
         let problems = config.problems(site.robots as u32);
-        assert!(problems.is_empty(), "the radio's configuration is unusable: {problems:?}");
+        assert!(
+            problems.is_empty(),
+            "the radio's configuration is unusable: {problems:?}"
+        );
         let phy = config.phy();
         let access = config.access();
         let robots = site.robots;
@@ -364,7 +383,11 @@ impl Shared {
         for (place, at) in jammers.begin() {
             agenda.add(at, Task::Jam(place));
         }
-        let drift = site.skews.iter().copied().fold(0.0, |most: f64, skew| most.max(skew.abs()));
+        let drift = site
+            .skews
+            .iter()
+            .copied()
+            .fold(0.0, |most: f64, skew| most.max(skew.abs()));
         Self {
             budget: Arc::new(config.budget(&phy, site)),
             scheme: access.scheme(&config.technology, &phy, robots, drift),
@@ -377,13 +400,13 @@ impl Shared {
             radios: std::iter::repeat_with(Radio::default).take(robots).collect(),
             ears: std::iter::repeat_with(Ear::default).take(robots).collect(),
             skews: site.skews.clone(),
+            scans: site.streams.keyed(SCANS),
             room: config.queue as usize,
             longest: Span::ZERO,
             body_radius: site.body_radius,
             reached: Vec::new(),
             spare: Vec::new(),
             shortest: phy.airtime(0),
-            channels: phy.channels,
             phy,
         }
     }

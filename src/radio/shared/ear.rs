@@ -97,11 +97,18 @@ impl Ear {
     /// This burst, if it reaches here.
     pub fn of(&self, burst: BurstId) -> Option<&Heard> {
         let heard = self.heard.iter().rev();
-        heard.take_while(|heard| heard.burst >= burst).find(|heard| heard.burst == burst)
+        heard
+            .take_while(|heard| heard.burst >= burst)
+            .find(|heard| heard.burst == burst)
     }
 
     /// All that is on air on `channel` at any time from `from` to before `until`, as it began.
-    pub fn during(&self, channel: u8, from: SimTime, until: SimTime) -> impl DoubleEndedIterator<Item = &Heard> + Clone {
+    pub fn during(
+        &self,
+        channel: u8,
+        from: SimTime,
+        until: SimTime,
+    ) -> impl DoubleEndedIterator<Item = &Heard> + Clone {
         let heard = self.heard.iter();
         heard.filter(move |heard| (heard.channel == channel || heard.is_noise) && heard.overlaps(from, until))
     }
@@ -126,7 +133,10 @@ impl Ear {
     /// A burst breaks off.
     pub fn cut(&mut self, burst: BurstId, now: SimTime) {
         let heard = self.heard.iter_mut().rev();
-        if let Some(heard) = heard.take_while(|heard| heard.burst >= burst).find(|heard| heard.burst == burst) {
+        if let Some(heard) = heard
+            .take_while(|heard| heard.burst >= burst)
+            .find(|heard| heard.burst == burst)
+        {
             heard.ends = now;
         }
     }

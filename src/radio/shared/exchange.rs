@@ -1,15 +1,16 @@
 //! Bursts: they begin, reach everybody in earshot, end, are judged, and are answered.
 
-use super::access::{Next, Outcome};
+use super::access::{self, Next};
 use super::agenda::Task;
 use super::burst::{Burst, BurstId, Content};
 use super::ear::Heard;
+use super::receiver::dbm;
 use super::station::Doing;
 use super::{Shared, link};
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Vec2;
 use crate::radio::draw::FrameCopy;
-use crate::radio::{Fate, Fates, FrameId, LossCause, Places};
+use crate::radio::{Account, Fate, Fates, FrameId, LossCause, Outcome, Places};
 
 impl Shared {
     /// `robot` sends the head of its queue on `channel`.
@@ -65,11 +66,14 @@ impl Shared {
         };
         self.ears[robot.index()].hear(heard, since);
         self.ears[robot.index()].note_busy(now, ends);
-        self.radios[robot.index()].bursts += 1;
+        let radio = &mut self.radios[robot.index()];
+        radio.sent = radio.sent + airtime;
 
         let mut reached = std::mem::take(&mut self.reached);
         reached.clear();
-        places.for_each_within(position, now, self.budget.audible(), &mut |other, place| reached.push((other, place)));
+        places.for_each_within(position, now, self.budget.audible(), &mut |other, place| {
+            reached.push((other, place))
+        });
         for &(other, place) in &reached {
             if other == robot || self.is_hidden(robot, position, other, place, &reached) {
                 continue;
@@ -108,9 +112,13 @@ impl Shared {
         let mut reached = std::mem::take(&mut self.reached);
         reached.clear();
         let range = self.budget.audible_from(jammer.power);
-        places.for_each_within(jammer.position, now, range, &mut |robot, place| reached.push((robot, place)));
+        places.for_each_within(jammer.position, now, range, &mut |robot, place| {
+            reached.push((robot, place))
+        });
         for &(robot, place) in &reached {
-            let power = self.budget.noise_milliwatts(jammer.power, jammer.position, (robot, place), now);
+            let power = self
+                .budget
+                .noise_milliwatts(jammer.power, jammer.position, (robot, place), now);
             if power > 0.0 {
                 let heard = Heard {
                     burst,
@@ -133,19 +141,13 @@ impl Shared {
     /// Whether a third body among `near` is in the way of light.
     fn is_hidden(&self, from: ActorId, here: Vec2, to: ActorId, there: Vec2, near: &[(ActorId, Vec2)]) -> bool {
         self.budget.infrared.is_some()
-            && near.iter().any(|&(third, body)| {
-                third != from && third != to && link::hides(body, self.body_radius, here, there)
-            })
+            && near
+                .iter()
+                .any(|&(third, body)| third != from && third != to && link::hides(body, self.body_radius, here, there))
     }
 
     /// A burst is over: who has it and who has not is decided, as far as it can be.
-    pub(super) fn end(
-        &mut self,
-        now: SimTime,
-        id: BurstId,
-        places: &dyn Places,
-        fates: &mut Fates,
-    ) -> Option<FrameId> {
+    pub(super) fn end(&mut self, now: SimTime, id: BurstId, places: &dyn Places, fates: &mut Fates) -> Option<FrameId> {
         let burst = self.bursts.get(id)?.clone();
         match burst.content {
             Content::Frame { frame, to, .. } => {
@@ -156,7 +158,7 @@ impl Shared {
                 if burst.cut {
                     return self.conclude_cut(now, burst.sender, fates);
                 }
-                if burst.channel + 1 < self.channels {
+                if burst.channel + 1 < self.phy.channels {
                     self.begin(now, burst.sender, burst.channel + 1, places);
                     return Some(frame);
                 }
@@ -171,13 +173,13 @@ impl Shared {
                         self.agenda.add(now + patience, Task::Timeout(burst.sender.0, stamp));
                         Some(frame)
                     }
-                    _ => self.conclude(now, burst.sender, Outcome::Sent, fates),
+                    _ => self.conclude(now, burst.sender, access::Outcome::Sent, fates),
                 }
             }
             Content::Acknowledgement { of, to } => {
                 let waits = self.radios[to.index()].doing == Doing::Waits(of);
                 let gets = waits && self.verdict(id, &burst, to).is_ok();
-                gets.then(|| self.conclude(now, to, Outcome::Acknowledged, fates))?
+                gets.then(|| self.conclude(now, to, access::Outcome::Acknowledged, fates))?
             }
             Content::Noise => None,
         }
@@ -191,22 +193,30 @@ impl Shared {
         let (frame, to) = (head.frame, head.to);
         let mut open = std::mem::take(&mut head.open);
         let mut arrived = head.arrived;
-        open.retain_mut(|(receiver, cause)| match self.verdict(id, burst, *receiver) {
-            Ok(()) => {
-                arrived |= to == Some(*receiver);
-                let copy = FrameCopy {
-                    sender: burst.sender,
-                    receiver: *receiver,
-                    sequence: frame.number,
-                };
-                let displacement = self.sensing.displacement(copy, burst.position - places.position(*receiver, now));
-                fates.push(*receiver, Fate::Arrives { at: now, displacement });
-                false
+        open.retain_mut(|open| {
+            let receiver = open.receiver;
+            let towards = burst.position - places.position(receiver, now);
+            open.distance = towards.norm() as f32;
+            if let Some(heard) = self.ears[receiver.index()].of(id) {
+                open.power = dbm(heard.power) as f32;
             }
-            Err(why) => {
-                *cause = why;
-                true
+            if let Err(why) = self.verdict(id, burst, receiver) {
+                // Of the channels that it did not listen to it knows nothing.
+                if self.listens_to(receiver, burst) {
+                    open.cause = why;
+                }
+                return true;
             }
+            arrived |= to == Some(receiver);
+            let copy = FrameCopy {
+                sender: burst.sender,
+                receiver,
+                sequence: frame.number,
+            };
+            let displacement = self.sensing.displacement(copy, towards);
+            fates.read(open.reading(true));
+            fates.push(receiver, Fate::Arrives { at: now, displacement });
+            false
         });
         if let Some(head) = self.radios[burst.sender.index()].queue.front_mut() {
             head.open = open;
@@ -225,7 +235,11 @@ impl Shared {
         let ear = &self.ears[receiver.index()];
         let Some(heard) = ear.of(id) else {
             let infrared = self.budget.infrared.is_some();
-            return Err(if infrared { LossCause::Occlusion } else { LossCause::BelowSensitivity });
+            return Err(if infrared {
+                LossCause::Occlusion
+            } else {
+                LossCause::BelowSensitivity
+            });
         };
         if !self.listens_to(receiver, burst) {
             return Err(LossCause::Channel);
@@ -236,13 +250,41 @@ impl Shared {
         self.receiver.judge(ear, heard, burst, receiver)
     }
 
+    /// Whether `receiver` listens on the channel of a burst: it did as it began.
+    fn listens_to(&self, receiver: ActorId, burst: &Burst) -> bool {
+        let channels = u64::from(self.phy.channels);
+        if channels == 1 {
+            return true;
+        }
+        let dwell = self.phy.dwell.as_nanos().max(1);
+        let [phase, _] = self.scans.first_two(receiver.0, 0, 0);
+        let round = dwell * channels;
+        let place = (burst.begins.as_nanos() + phase % round) % round / dwell;
+        place == u64::from(burst.channel)
+    }
+
+    /// What the radio of `robot` has done up to `now`.
+    pub(super) fn account_of(&self, now: SimTime, robot: ActorId) -> Account {
+        let radio = &self.radios[robot.index()];
+        let unsent = match radio.doing {
+            Doing::Sends(burst) => self.bursts.get(burst).map_or(Span::ZERO, |burst| burst.ends.since(now)),
+            _ => Span::ZERO,
+        };
+        Account {
+            sent: Span::from_nanos(radio.sent.as_nanos().saturating_sub(unsent.as_nanos())),
+            busy: self.ears[robot.index()].busy_by(now),
+            ..Account::default()
+        }
+    }
+
     /// Whether `to` answers a burst that ends now, which it then plans.
     fn answer(&mut self, now: SimTime, id: BurstId, burst: &Burst, to: ActorId) -> bool {
         let Some(answering) = self.scheme.answering() else {
             return false;
         };
         let radio = &self.radios[to.index()];
-        if !radio.sends || matches!(radio.doing, Doing::Turns | Doing::Sends(_)) || self.verdict(id, burst, to).is_err() {
+        if !radio.sends || matches!(radio.doing, Doing::Turns | Doing::Sends(_)) || self.verdict(id, burst, to).is_err()
+        {
             return false;
         }
         let begins = now + answering.after;
@@ -274,12 +316,17 @@ impl Shared {
         &mut self,
         now: SimTime,
         robot: ActorId,
-        outcome: Outcome,
+        outcome: access::Outcome,
         fates: &mut Fates,
     ) -> Option<FrameId> {
         let next = self.at_medium(now, robot, |scheme, station| scheme.after(now, outcome, station));
         let radio = &mut self.radios[robot.index()];
         let stamp = radio.replan(Doing::Contends);
+        let outcome = match outcome {
+            access::Outcome::Sent => Outcome::Sent,
+            access::Outcome::Acknowledged => Outcome::Acknowledged,
+            access::Outcome::Unanswered => Outcome::Unacknowledged,
+        };
         match next {
             Next::Again(at) => {
                 self.agenda.add(at, Task::Access(robot.0, stamp));
@@ -289,7 +336,7 @@ impl Shared {
             }
             Next::Done(at) => {
                 self.agenda.add(at, Task::Access(robot.0, stamp));
-                self.drop_head(robot, None, fates)
+                self.drop_head(now, robot, outcome, fates)
             }
         }
     }
@@ -298,7 +345,7 @@ impl Shared {
     fn conclude_cut(&mut self, now: SimTime, robot: ActorId, fates: &mut Fates) -> Option<FrameId> {
         let stamp = self.radios[robot.index()].replan(Doing::Contends);
         self.agenda.add(now, Task::Access(robot.0, stamp));
-        self.drop_head(robot, Some(LossCause::SenderDown), fates)
+        self.drop_head(now, robot, Outcome::Dropped(LossCause::SenderDown), fates)
     }
 
     /// `robot` can send no more: what it sends breaks off, and what it was to send is lost.
@@ -330,11 +377,8 @@ impl Shared {
         if radio.sends || radio.queue.len() <= under_way {
             return None;
         }
-        let mut queued = radio.queue.remove(under_way)?;
-        for (receiver, _) in queued.open.drain(..) {
-            fates.push(receiver, Fate::Lost(LossCause::SenderDown));
-        }
+        let queued = radio.queue.remove(under_way)?;
         self.agenda.add(now, Task::Flush(robot.0));
-        Some(queued.frame)
+        Some(self.finish(queued, Outcome::Dropped(LossCause::SenderDown), fates))
     }
 }

@@ -41,7 +41,8 @@ pub(super) const UNSEEN_DBM: f64 = -1.0;
 impl LinkBudget {
     /// How far a burst is looked for, metres.
     pub fn audible(&self) -> f64 {
-        self.infrared.unwrap_or_else(|| self.distance_at(self.floor.min(self.threshold)))
+        self.infrared
+            .unwrap_or_else(|| self.distance_at(self.floor.min(self.threshold)))
     }
 
     /// How far the strongest robot reaches with so much power, shadowing at its best, metres.
@@ -80,7 +81,8 @@ impl LinkBudget {
 
     /// How far noise of so much power is looked for, metres.
     pub fn audible_from(&self, power: f64) -> f64 {
-        self.path.distance_at(power + self.best_gain - self.floor + DEVIATIONS * self.sigma)
+        self.path
+            .distance_at(power + self.best_gain - self.floor + DEVIATIONS * self.sigma)
     }
 
     /// The power of a sender of noise at a robot, milliwatts.

@@ -25,25 +25,27 @@ mod receiver;
 mod station;
 
 pub use access::{AccessConfig, CsmaCaConfig, DcfConfig, PacedConfig};
-pub use config::{CaptureConfig, SharedConfig, WallsConfig};
+pub use config::{CaptureConfig, SharedConfig};
 pub use jammer::NoiseConfig;
 
 use std::sync::Arc;
 
 use access::{Draws, Head, Scheme, Station, Step};
 use agenda::{Agenda, Task};
-use burst::{Burst, Bursts, Content};
-use ear::{Ear, Heard};
+use burst::Bursts;
+use ear::Ear;
 use jammer::Jammers;
 use link::LinkBudget;
 use receiver::Receiver;
-use station::{Doing, Queued, Radio};
+use station::{Doing, Open, Queued, Radio};
 
-use super::draw::FrameCopy;
 use super::sensing::Sensing;
 use super::technology::Phy;
-use super::{Fate, Fates, FrameId, LossCause, Medium, Places, RadioKind, RadioSite, Reach, Transmission};
-use crate::engine::{ActorId, SimTime, Span};
+use super::{
+    Account, Conclusion, Fate, Fates, FrameId, LossCause, Medium, Outcome, Places, RadioKind, RadioSite, Reach,
+    Transmission,
+};
+use crate::engine::{ActorId, KeyedStreams, SimTime, Span};
 use crate::geometry::Vec2;
 
 /// The shared radio of one run.
@@ -63,21 +65,29 @@ pub struct Shared {
     skews: Vec<f64>,
     /// Frames that a queue holds at most, the one being sent included.
     room: usize,
-    /// On how many channels in turn each frame is sent.
-    channels: u8,
+    /// Where receivers begin their rounds of channels.
+    scans: KeyedStreams,
     /// The longest burst so far: what is older than two of these, and than what medium access looks back to, is over.
     longest: Span,
     /// Bodies are in the way of light.
     body_radius: f64,
     /// Buffers.
     reached: Vec<(ActorId, Vec2)>,
-    spare: Vec<Vec<(ActorId, LossCause)>>,
+    spare: Vec<Vec<Open>>,
     shortest: Span,
 }
 
 impl RadioKind for SharedConfig {
     fn medium(&self, site: &RadioSite) -> Box<dyn Medium> {
         Box::new(Shared::new(self, site))
+    }
+
+    fn header_bytes(&self, topics: usize, several: bool) -> Option<[u16; 2]> {
+        let frame = self.phy().header_bytes as u16;
+        let message = self
+            .message_header_bytes
+            .unwrap_or_else(|| u16::from(topics > 1) + 2 * u16::from(several));
+        Some([frame, message])
     }
 }
 
@@ -104,18 +114,28 @@ impl Medium for Shared {
         for listener in frame.listeners {
             fates.push(listener.id, refusal.map_or(Fate::Open, Fate::Lost));
         }
-        if refusal.is_some() {
+        if let Some(cause) = refusal {
+            fates.conclude(Conclusion {
+                frame: frame.frame,
+                outcome: Outcome::Dropped(cause),
+                handed_over: frame.at,
+                at_head: frame.at,
+                began: None,
+                attempts: 0,
+            });
             return;
         }
         let mut open = self.spare.pop().unwrap_or_default();
-        open.extend(frame.listeners.iter().map(|listener| (listener.id, LossCause::BelowSensitivity)));
+        let listeners = frame.listeners.iter();
+        open.extend(listeners.map(|listener| Open::new(listener.id, listener.sender.norm())));
         let radio = &mut self.radios[robot.index()];
         radio.queue.push_back(Queued {
             frame: frame.frame,
             to: frame.to,
             payload,
             airtime: self.phy.airtime(payload),
-            at: frame.at,
+            handed_over: frame.at,
+            at_head: frame.at,
             attempt: 0,
             began: None,
             open,
@@ -134,7 +154,9 @@ impl Medium for Shared {
 
     fn advance(&mut self, now: SimTime, places: &dyn Places, fates: &mut Fates) -> Option<FrameId> {
         match self.agenda.take()? {
-            Task::Access(robot, stamp) => self.is_planned(robot, stamp).then(|| self.access(now, ActorId(robot), fates))?,
+            Task::Access(robot, stamp) => self
+                .is_planned(robot, stamp)
+                .then(|| self.access(now, ActorId(robot), fates))?,
             Task::Begin(robot, stamp) => {
                 if self.is_planned(robot, stamp) {
                     self.begin(now, ActorId(robot), 0, places);
@@ -157,7 +179,7 @@ impl Medium for Shared {
         }
     }
 
-    fn enable(&mut self, now: SimTime, robot: ActorId, sends: bool, hears: bool, _: &dyn Places) {
+    fn enable(&mut self, now: SimTime, _: &dyn Places, robot: ActorId, sends: bool, hears: bool) {
         let radio = &mut self.radios[robot.index()];
         if !hears {
             radio.hears_from = SimTime::NEVER;
@@ -171,6 +193,14 @@ impl Medium for Shared {
         if !sends {
             self.silence(now, robot);
         }
+    }
+
+    fn takes_far(&self) -> bool {
+        true
+    }
+
+    fn account(&self, now: SimTime, robot: ActorId) -> Option<Account> {
+        Some(self.account_of(now, robot))
     }
 }
 
@@ -198,7 +228,8 @@ impl Shared {
             }
             Step::Send(at) => {
                 let stamp = radio.replan(Doing::Turns);
-                let airtime = radio.queue.front().map_or(Span::ZERO, |head| head.airtime) * u64::from(self.channels);
+                let airtime =
+                    radio.queue.front().map_or(Span::ZERO, |head| head.airtime) * u64::from(self.phy.channels);
                 let until = at + airtime + self.scheme.turnaround();
                 let since = self.since(now);
                 self.ears[robot.index()].deafen(now, until, since);
@@ -207,14 +238,19 @@ impl Shared {
             Step::GiveUp(cause) => {
                 let stamp = radio.replan(Doing::Contends);
                 self.agenda.add(now, Task::Access(robot.0, stamp));
-                return self.drop_head(robot, Some(cause), fates);
+                return self.drop_head(now, robot, Outcome::Dropped(cause), fates);
             }
         }
         None
     }
 
     /// Asks medium access something about `robot`.
-    fn at_medium<T>(&mut self, now: SimTime, robot: ActorId, ask: impl FnOnce(&mut dyn Scheme, &mut Station<'_>) -> T) -> T {
+    fn at_medium<T>(
+        &mut self,
+        now: SimTime,
+        robot: ActorId,
+        ask: impl FnOnce(&mut dyn Scheme, &mut Station<'_>) -> T,
+    ) -> T {
         let radio = &self.radios[robot.index()];
         let answering = self.scheme.answering().is_some();
         let head = radio.queue.front().map(|queued| Head {
@@ -229,19 +265,41 @@ impl Shared {
             ear: &mut self.ears[robot.index()],
             bursts: &self.bursts,
             receiver: &self.receiver,
-            skew: self.skews[robot.index()],
+            skew: self.skews.get(robot.index()).copied().unwrap_or(0.0),
             draws: &mut self.draws,
         };
         ask(self.scheme.as_mut(), &mut station)
     }
 
-    /// Takes the head off the queue of `robot`: the copies that have not arrived are lost, for this cause or each for its own.
-    fn drop_head(&mut self, robot: ActorId, cause: Option<LossCause>, fates: &mut Fates) -> Option<FrameId> {
-        let mut queued = self.radios[robot.index()].queue.pop_front()?;
-        for (receiver, own) in queued.open.drain(..) {
-            fates.push(receiver, Fate::Lost(cause.unwrap_or(own)));
+    /// Takes the head off the queue of `robot`: the copies that have not arrived are lost, for the reason for which it was dropped or each for its own.
+    fn drop_head(&mut self, now: SimTime, robot: ActorId, outcome: Outcome, fates: &mut Fates) -> Option<FrameId> {
+        let queue = &mut self.radios[robot.index()].queue;
+        let queued = queue.pop_front()?;
+        if let Some(next) = queue.front_mut() {
+            next.at_head = now;
+        }
+        Some(self.finish(queued, outcome, fates))
+    }
+
+    /// Is done with a frame.
+    fn finish(&mut self, mut queued: Queued, outcome: Outcome, fates: &mut Fates) -> FrameId {
+        for open in queued.open.drain(..) {
+            fates.read(open.reading(false));
+            let cause = match outcome {
+                Outcome::Dropped(cause) => cause,
+                Outcome::Sent | Outcome::Acknowledged | Outcome::Unacknowledged => open.cause,
+            };
+            fates.push(open.receiver, Fate::Lost(cause));
         }
         self.spare.push(queued.open);
-        Some(queued.frame)
+        fates.conclude(Conclusion {
+            frame: queued.frame,
+            outcome,
+            handed_over: queued.handed_over,
+            at_head: queued.at_head,
+            began: queued.began,
+            attempts: queued.attempt + u32::from(queued.began.is_some()),
+        });
+        queued.frame
     }
 }

@@ -87,7 +87,10 @@ impl Receiver {
     pub fn detects(&self, ear: &Ear, heard: &Heard) -> bool {
         let until = heard.begins + self.latency.max(INSTANT);
         let others = ear.during(heard.channel, heard.begins, until);
-        let others: f64 = others.filter(|other| other.burst != heard.burst).map(|other| other.power).sum();
+        let others: f64 = others
+            .filter(|other| other.burst != heard.burst)
+            .map(|other| other.power)
+            .sum();
         heard.power > self.lock * (self.noise + others)
     }
 
@@ -99,7 +102,7 @@ impl Receiver {
         let waveform = self.waveform(burst);
         let alone = || self.survival(&waveform, burst, (heard.begins, heard.ends), heard.power / self.noise);
         let others = ear.during(heard.channel, heard.begins, heard.ends);
-        let mut others = others.filter(|other| other.burst != heard.burst);
+        let others = others.filter(|other| other.burst != heard.burst);
         let disturbed = !self.orthogonal && others.clone().next().is_some();
         if self.capture.is_none() && !self.orthogonal {
             if heard.power <= self.lock * self.noise {
@@ -229,7 +232,11 @@ impl Chunk {
                 chunk.until = chunk.until.min(other.begins);
             } else if other.ends > from {
                 chunk.until = chunk.until.min(other.ends);
-                let sum = if other.is_noise { &mut chunk.noise } else { &mut chunk.frames };
+                let sum = if other.is_noise {
+                    &mut chunk.noise
+                } else {
+                    &mut chunk.frames
+                };
                 *sum += other.power;
             }
         }
@@ -249,4 +256,9 @@ pub(super) fn milliwatts(dbm: f64) -> f64 {
 /// Decibels as a ratio.
 pub(super) fn ratio(db: f64) -> f64 {
     libm::exp10(db / 10.0)
+}
+
+/// Milliwatts as a level in dBm.
+pub(super) fn dbm(milliwatts: f64) -> f64 {
+    10.0 * libm::log10(milliwatts)
 }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::agenda::Stamp;
 use super::burst::BurstId;
 use crate::engine::{ActorId, SimTime, Span};
-use crate::radio::{FrameId, LossCause};
+use crate::radio::{FrameId, LossCause, Reading};
 
 /// One robot's.
 #[derive(Debug)]
@@ -21,8 +21,8 @@ pub(super) struct Radio {
     pub sends: bool,
     /// Since when it can hear; `NEVER` if it cannot.
     pub hears_from: SimTime,
-    /// Bursts that it has begun: those that were cut short too.
-    pub bursts: u32,
+    /// How long it has been sending, what is on air now to its end.
+    pub sent: Span,
 }
 
 /// What a radio is doing.
@@ -48,16 +48,48 @@ pub(super) struct Queued {
     pub to: Option<ActorId>,
     pub payload: u32,
     pub airtime: Span,
-    /// When it was handed over.
-    pub at: SimTime,
+    /// When it was handed over, and when there was nothing left before it.
+    pub handed_over: SimTime,
+    pub at_head: SimTime,
     /// How often it was sent before.
     pub attempt: u32,
     /// When it first went on air.
     pub began: Option<SimTime>,
-    /// Who has not got it yet, and why not.
-    pub open: Vec<(ActorId, LossCause)>,
+    /// Who has not got it yet.
+    pub open: Vec<Open>,
     /// Whether the one robot that it is for has got it.
     pub arrived: bool,
+}
+
+/// A copy that has not arrived.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Open {
+    pub receiver: ActorId,
+    /// Why it has not, as far as that is known.
+    pub cause: LossCause,
+    /// How far away and how strong its sender was when it was last sent, or how far away when it was handed over: metres, dBm.
+    pub distance: f32,
+    pub power: f32,
+}
+
+impl Open {
+    pub fn new(receiver: ActorId, distance: f64) -> Self {
+        Self {
+            receiver,
+            cause: LossCause::BelowSensitivity,
+            distance: distance as f32,
+            power: f32::NEG_INFINITY,
+        }
+    }
+
+    pub fn reading(&self, received: bool) -> Reading {
+        Reading {
+            receiver: self.receiver,
+            distance: self.distance,
+            power: self.power,
+            received,
+        }
+    }
 }
 
 impl Default for Radio {
@@ -69,7 +101,7 @@ impl Default for Radio {
             answers_until: SimTime::ZERO,
             sends: true,
             hears_from: SimTime::ZERO,
-            bursts: 0,
+            sent: Span::ZERO,
         }
     }
 }

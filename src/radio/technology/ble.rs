@@ -34,6 +34,8 @@ const INTERVALS_S: [f64; 2] = [0.02, 10_485.759_375];
 pub struct BleAdvertisingConfig {
     /// Time between two advertisements of a robot, seconds, 0.02 to 10 485; up to 10 ms more, drawn each time, keep robots from staying in step.
     pub interval: Positive,
+    /// How long a robot listens on one of the three channels before it goes on to the next, seconds.
+    pub scan_interval: Positive,
     /// Carrier, Hz. By default 2.426 GHz, the middle one of the three channels (38).
     pub frequency: Positive,
     /// The weakest signal of which one bit in a thousand is wrong, dBm. −95: usual in data sheets.
@@ -47,6 +49,7 @@ impl Default for BleAdvertisingConfig {
     fn default() -> Self {
         Self {
             interval: Positive::new(0.1),
+            scan_interval: Positive::new(0.1),
             frequency: Positive::new(2.426e9),
             sensitivity: Finite::new(-95.0),
             lock: Finite::new(8.0),
@@ -71,6 +74,9 @@ impl BleAdvertisingConfig {
             sensitivity,
             noise: sensitivity - modulation.required_snr_db(1, SENSITIVITY_ERRORS),
             assess: None,
+            carrier: None,
+            channels: 3,
+            dwell: Span::from_secs(self.scan_interval.get()),
             lock: self.lock.get(),
             capture: Some(21.0),
             infrared: None,

@@ -143,6 +143,9 @@ fn phy(range: Positive, drop: Probability, [payload, beside]: [u32; 2], airtime:
         sensitivity: f64::NEG_INFINITY,
         noise: f64::NEG_INFINITY,
         assess: None,
+        carrier: None,
+        channels: 1,
+        dwell: Span::ZERO,
         lock: f64::NEG_INFINITY,
         capture: None,
         infrared: Some(Infrared {

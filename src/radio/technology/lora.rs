@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::chirp::Chirp;
 use super::noise::thermal_dbm;
 use super::phy::{Air, Phy, Supply};
+use crate::engine::Span;
 use crate::quantity::{NonNegative, Positive, Probability};
 use crate::radio::Modulation;
 
@@ -75,6 +76,9 @@ impl LoRaConfig {
             sensitivity: noise + least,
             noise,
             assess: None,
+            carrier: None,
+            channels: 1,
+            dwell: Span::ZERO,
             lock: least,
             capture: Some(6.0),
             infrared: None,

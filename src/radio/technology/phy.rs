@@ -28,6 +28,12 @@ pub struct Phy {
     pub noise: f64,
     /// Power from which on a clear channel assessment finds the channel busy, dBm; `None` where nobody listens before sending.
     pub assess: Option<f64>,
+    /// Power of a single frame from which on medium access finds the channel busy, dBm, if that is another than `assess`.
+    pub carrier: Option<f64>,
+    /// On how many channels each frame is sent in turn; a receiver listens on one of them at a time, for `dwell` each.
+    pub channels: u8,
+    /// How long a receiver stays on a channel.
+    pub dwell: Span,
     /// The least ratio of signal to noise and interference at which a receiver locks on a frame, dB.
     pub lock: f64,
     /// By how much a frame must be above each other frame of the same technology that overlaps it, dB, if overlaps are not to count as mere noise. The

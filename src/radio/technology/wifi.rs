@@ -8,6 +8,7 @@ use super::noise::thermal_dbm;
 use super::ofdm::{Ofdm, OfdmRate};
 use super::phy::{Air, Phy, Supply};
 use super::waveform::Waveform;
+use crate::engine::Span;
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::radio::Modulation;
 
@@ -49,6 +50,8 @@ pub struct WifiConfig {
     pub noise_figure: NonNegative,
     /// Energy from which on the channel is busy, dBm, frame or not. −62: as in ns-3 (802.11-2016, clause 17.3.10.6).
     pub assess: Finite,
+    /// Power of a frame from which on a clear channel assessment finds the channel busy, dBm. −82: the standards' and ns-3's.
+    pub carrier: Finite,
     /// The least ratio of signal to noise and interference at which a receiver locks on a frame, dB. 4: as in ns-3.
     pub lock: Finite,
 }
@@ -92,6 +95,7 @@ impl Default for WifiConfig {
             frequency: Positive::new(2.437e9),
             noise_figure: NonNegative::new(7.0),
             assess: Finite::new(-62.0),
+            carrier: Finite::new(-82.0),
             lock: Finite::new(4.0),
         }
     }
@@ -123,6 +127,9 @@ impl WifiConfig {
             sensitivity: noise + kind.modulation.required_snr_db(8 * bytes, loss),
             noise,
             assess: Some(self.assess.get()),
+            channels: 1,
+            dwell: Span::ZERO,
+            carrier: Some(self.carrier.get()),
             lock: self.lock.get(),
             capture: Some(5.0),
             infrared: None,

@@ -250,8 +250,8 @@ pub fn headers(input: &PageInput) -> Figure {
              each message in it; the number is the share of headers. Small messages pay most for their headers: sending several in one \
              frame saves some of that.",
             input.in_trials(),
-            input.scenario.radio.frame_header_bytes,
-            input.scenario.radio.message_header_bytes
+            input.scenario.radio.disk().frame_header_bytes,
+            input.scenario.radio.disk().message_header_bytes
         ),
         panels: vec![if bars.iter().all(|bar| bar.1 + bar.2 == 0.0) {
             Panel::words("", "Nothing was sent.")

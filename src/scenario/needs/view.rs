@@ -42,7 +42,7 @@ impl<'a> View<'a> {
         let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
         let neighbours = neighbours(scenario).min(robots - 1.0).max(0.0);
         // What robots of speed v, 4/π as fast against each other, sweep with their range in a trial.
-        let swept = 2.0 * scenario.radio.range.get() * 4.0 / PI * scenario.wander.speed() * time_limit;
+        let swept = 2.0 * scenario.radio.disk().range.get() * 4.0 / PI * scenario.wander.speed() * time_limit;
         let met = robots * (robots - 1.0) * swept / (width * height);
         let sample_interval = scenario.metrics.sample_interval.get();
         let period = Span::from_secs(scenario.control.period.get());
@@ -123,7 +123,7 @@ impl<'a> View<'a> {
 
     /// Copies under way or waiting to be read at once: all that is sent until they are read, and one.
     pub fn copies(&self) -> f64 {
-        let latency = self.scenario.radio.latency.mean().min(self.time_limit);
+        let latency = self.scenario.radio.disk().latency.mean().min(self.time_limit);
         let sent = self.rate() * (latency + self.waits());
         self.robots * self.neighbours * (1.0 + sent)
     }
@@ -133,8 +133,8 @@ impl<'a> View<'a> {
         let Some(interval) = self.status_s else { return 0.0 };
         let silence = self.scenario.detector.longest_silence(self.scenario.circumstances());
         let span = (3.0 * silence.as_secs()).min(self.time_limit);
-        let range = self.scenario.radio.range.get();
-        let lost = self.scenario.radio.loss.mean_loss(range, range);
+        let range = self.scenario.radio.disk().range.get();
+        let lost = self.scenario.radio.disk().loss.mean_loss(range, range);
         self.robots * span / interval * (STATUS + self.neighbours * lost * LOST)
     }
 
@@ -153,8 +153,8 @@ impl<'a> View<'a> {
         let often = match &scenario.detector {
             DetectorConfig::None => return 0.0,
             DetectorConfig::Swim(swim) => {
-                let range = scenario.radio.range.get();
-                let failing = swim.probe_failure(scenario.radio.loss.mean_loss(range, range));
+                let range = scenario.radio.disk().range.get();
+                let failing = swim.probe_failure(scenario.radio.disk().loss.mean_loss(range, range));
                 in_range * failing / swim.probe_interval.get()
             }
             detector => {
@@ -169,7 +169,7 @@ impl<'a> View<'a> {
     /// early enough to arrive within it, were they no later than some latency, each is lost or later than that; the latency that
     /// bounds this best is taken.
     fn mistakes(&self, interval: f64, silence: f64) -> f64 {
-        let radio = &self.scenario.radio;
+        let radio = self.scenario.radio.disk();
         let latencies = radio.latency.quantiles(200);
         let number = latencies.len();
         let range = radio.range.get();
@@ -268,7 +268,7 @@ fn around(places: &[(Finite, Finite)], range: f64) -> f64 {
 /// Robots that hear a broadcast at the start, an upper bound: as dense as they are deployed, and never overlapping.
 fn neighbours(scenario: &Scenario) -> f64 {
     let robots = f64::from(scenario.swarm.robots);
-    let range = scenario.radio.range.get();
+    let range = scenario.radio.disk().range.get();
     let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
     let packed = (range / scenario.motion.body_radius.get() + 1.0).powi(2);
     let within = |area: f64| robots * PI * range * range / area;

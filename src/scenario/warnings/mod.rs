@@ -23,7 +23,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
 
 /// Channels that let nothing through, or never do what they are set up for.
 fn losses(scenario: &Scenario) -> Option<Problem> {
-    let radio = &scenario.radio;
+    let radio = scenario.radio.disk();
     let range = radio.range.get();
     if radio.loss.mean_loss(range / 2.0, range) >= 1.0 {
         let message = "the channel loses every frame: no robot ever hears another";
@@ -46,9 +46,8 @@ fn losses(scenario: &Scenario) -> Option<Problem> {
 
 /// Settings that differ from their defaults and that nothing reads with this protocol.
 fn unread(scenario: &Scenario) -> Vec<Problem> {
-    let Scenario {
-        motion, metrics, radio, ..
-    } = scenario;
+    let Scenario { motion, metrics, .. } = scenario;
+    let radio = scenario.radio.disk();
     let defaults = MotionConfig::default();
     let protocol = scenario.protocol.name();
     let senses = scenario.protocol.senses();

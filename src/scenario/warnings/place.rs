@@ -22,7 +22,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
 
 /// Ranges below what bodies keep apart, and far beyond the arena.
 fn range(scenario: &Scenario) -> Option<Problem> {
-    let range = scenario.radio.range.get();
+    let range = scenario.radio.disk().range.get();
     let bodies = 2.0 * scenario.motion.body_radius.get();
     if range < bodies {
         let message =
@@ -33,7 +33,7 @@ fn range(scenario: &Scenario) -> Option<Problem> {
     let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
     let diagonal = width.hypot(height);
     // Loss by distance is stated against the range, which may then lie where nobody is.
-    let by_distance = matches!(scenario.radio.loss, LossConfig::Distance { .. });
+    let by_distance = matches!(scenario.radio.disk().loss, LossConfig::Distance { .. });
     (range > FAR * diagonal && !by_distance).then(|| {
         let message = format!(
             "a range of {range} m is far beyond the arena, whose diagonal is {diagonal:.1} m: everybody hears everybody"
@@ -71,11 +71,11 @@ fn deployment(scenario: &Scenario) -> Vec<Problem> {
     let Some(InPieces { bearable, what }) = scenario.protocol.in_pieces(&scenario.sections()) else {
         return Vec::new();
     };
-    let Some(survey) = scenario.site().survey(scenario.radio.range.get()) else {
+    let Some(survey) = scenario.site().survey(scenario.radio.disk().range.get()) else {
         return Vec::new();
     };
     let mut found = Vec::new();
-    let (trials, range) = (survey.trials, scenario.radio.range.get());
+    let (trials, range) = (survey.trials, scenario.radio.disk().range.get());
     if survey.without_room > 0 {
         let message = format!(
             "robots find no room in trial {}, were there so many: random places fill up",

@@ -138,7 +138,7 @@ fn pauses(scenario: &Scenario) -> Option<Problem> {
 /// Latencies as long as the run.
 fn latency(scenario: &Scenario) -> Option<Problem> {
     let time_limit = scenario.time_limit.get();
-    let latencies = scenario.radio.latency.quantiles(QUANTILES);
+    let latencies = scenario.radio.disk().latency.quantiles(QUANTILES);
     // Of frames that are sent at any time of the trial: E[min(D, T)]/T.
     let within = latencies.iter().map(|latency| (latency / time_limit).min(1.0));
     let share = within.sum::<f64>() / latencies.len() as f64;
@@ -170,7 +170,7 @@ fn patience(scenario: &Scenario) -> Option<Problem> {
         DetectorConfig::NfdS(nfd_s) => nfd_s.shift.get(),
         _ => silence,
     };
-    let latencies = scenario.radio.latency.quantiles(QUANTILES);
+    let latencies = scenario.radio.disk().latency.quantiles(QUANTILES);
     let late = latencies.iter().filter(|latency| **latency > borne).count() as f64 / latencies.len() as f64;
     (late > LATE).then(|| {
         let message = format!(

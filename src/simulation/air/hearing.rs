@@ -5,8 +5,9 @@ use super::transmit::copy_of;
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::Health;
 use crate::happenings::Observer;
-use crate::protocol::{Protocol, Reception};
-use crate::radio::{Arrival, FrameId, LossCause};
+use crate::motion::World;
+use crate::protocol::{Concluded, Frame, Protocol, Reception};
+use crate::radio::{Arrival, FrameId, LossCause, Outcome};
 
 /// From an instant to the next.
 const INSTANT: Span = Span::from_nanos(1);
@@ -17,17 +18,76 @@ impl<P: Protocol> Air<P> {
         self.medium.next()
     }
 
-    /// Lets the radio do what is due at `now`.
-    pub fn advance(&mut self, now: SimTime, observer: &mut impl Observer) {
+    /// Lets the radio do what is due at `now`, with everybody where `world` has them.
+    pub fn advance(&mut self, now: SimTime, world: &World, observer: &mut impl Observer) {
         while self.medium.next() <= now {
-            if let Some(frame) = self.medium.advance(now, &mut self.fates) {
+            if let Some(frame) = self.medium.advance(now, world, &mut self.fates) {
                 self.decide(now, frame, observer);
+            }
+            self.tell_conclusions(now, observer);
+        }
+    }
+
+    /// Tells what the radios of senders are done with: the senders too, where their protocol heeds that.
+    pub(super) fn tell_conclusions(&mut self, now: SimTime, observer: &mut impl Observer) {
+        for conclusion in self.fates.conclusions.drain(..) {
+            observer.concluded(&conclusion);
+            if P::HEEDS_OUTCOMES {
+                let FrameId { sender, .. } = conclusion.frame;
+                let concluded = Concluded {
+                    sequence: Some(conclusion.frame.first()),
+                    messages: conclusion.frame.messages(),
+                    outcome: conclusion.outcome,
+                };
+                self.outcomes[sender.index()].push(concluded);
+                self.told.push((sender, now));
+            }
+        }
+    }
+
+    /// The messages of `robot`, whose radio cannot send, go nowhere: it learns so where its protocol heeds that.
+    pub fn refuse(&mut self, now: SimTime, robot: ActorId, messages: usize) {
+        if P::HEEDS_OUTCOMES {
+            let concluded = Concluded {
+                sequence: None,
+                messages: messages as u32,
+                outcome: Outcome::Dropped(LossCause::SenderDown),
+            };
+            self.outcomes[robot.index()].push(concluded);
+            self.told.push((robot, now));
+        }
+    }
+
+    /// Moves out what `robot` learns of frames of its own.
+    pub fn take_outcomes(&mut self, robot: ActorId, into: &mut Vec<Concluded>) {
+        if P::HEEDS_OUTCOMES {
+            into.append(&mut self.outcomes[robot.index()]);
+        }
+    }
+
+    /// Moves out the robots that have learnt something of frames of their own since the last call, and when.
+    pub fn take_told(&mut self, into: &mut Vec<(ActorId, SimTime)>) {
+        into.append(&mut self.told);
+    }
+
+    /// Tells what receivers measured of `frame`.
+    fn tell_readings(&mut self, now: SimTime, frame: FrameId, observer: &mut impl Observer) {
+        if self.powers.is_empty() {
+            self.powers.resize_with(self.inboxes.len(), Vec::new);
+        }
+        for reading in self.fates.readings.drain(..) {
+            observer.measured(now, frame, &reading);
+            if reading.received {
+                self.powers[reading.receiver.index()].push((frame, reading.power));
             }
         }
     }
 
     /// Lets the fates of open copies of `frame` take effect, which the radio has decided at `now`.
     fn decide(&mut self, now: SimTime, frame: FrameId, observer: &mut impl Observer) {
+        if !self.fates.readings.is_empty() {
+            self.tell_readings(now, frame, observer);
+        }
         for (receiver, cause) in self.fates.losses.drain(..) {
             let lost = self.inboxes[receiver.index()].lose(frame, |reception| {
                 observer.lost(&copy_of::<P>(&reception.frame, receiver), cause, now);
@@ -60,9 +120,16 @@ impl<P: Protocol> Air<P> {
 
     /// From `now` on the radio of `robot` does what its `health` allows. A copy is lost if its receiver cannot hear at the instant of its arrival;
     /// one that arrived before can still be read.
-    pub fn set_health(&mut self, now: SimTime, robot: ActorId, health: Health, observer: &mut impl Observer) {
+    pub fn set_health(
+        &mut self,
+        now: SimTime,
+        robot: ActorId,
+        health: Health,
+        world: &World,
+        observer: &mut impl Observer,
+    ) {
         let Health { sends, hears, .. } = health;
-        self.medium.enable(now, robot, sends, hears);
+        self.medium.enable(now, world, robot, sends, hears);
         if hears != self.hears(robot) {
             self.set_hearing(now, robot, hears, observer);
         }
@@ -103,12 +170,21 @@ impl<P: Protocol> Air<P> {
         now: SimTime,
         receiver: ActorId,
         arrived: &mut Vec<Reception<P::Heard>>,
+        powers: &mut Vec<f32>,
         observer: &mut impl Observer,
     ) {
         self.lose_unheard(now + INSTANT, receiver, observer);
         self.inboxes[receiver.index()].take_arrived(now, arrived);
         for reception in arrived.iter() {
             observer.delivered(&copy_of::<P>(&reception.frame, receiver), reception.at, Some(now));
+        }
+        if let Some(known) = self.powers.get_mut(receiver.index()) {
+            for reception in arrived.iter() {
+                let Frame { sender, sequence, .. } = reception.frame;
+                let of_it = known.iter().find(|(frame, _)| frame.holds(sender, sequence));
+                powers.push(of_it.map_or(f32::NAN, |(_, power)| *power));
+            }
+            known.clear();
         }
     }
 
@@ -130,6 +206,11 @@ impl<P: Protocol> Air<P> {
 
     /// Settles what still waits when the run ends at `end`: arrived means delivered; else, known to arrive or open, in flight.
     pub fn settle(&mut self, end: SimTime, observer: &mut impl Observer) {
+        for robot in (0..self.inboxes.len() as u32).map(ActorId) {
+            if let Some(account) = self.medium.account(end, robot) {
+                observer.accounted(robot, &account);
+            }
+        }
         for receiver in 0..self.inboxes.len() as u32 {
             self.lose_unheard(end + INSTANT, ActorId(receiver), observer);
         }

@@ -2,12 +2,12 @@
 
 use std::borrow::Borrow as _;
 
-use super::{Air, Numbers, Spoken};
+use super::{Air, Numbers, Spoken, Surroundings};
 use crate::engine::{ActorId, SimTime};
 use crate::faults::Faults;
 use crate::happenings::{Copy, Observer};
 use crate::protocol::{Address, Frame, MessageSize, Protocol, Reception, Topic};
-use crate::radio::{Fate, FrameId, LossCause, Transmission};
+use crate::radio::{Fate, FrameId, Listener, LossCause, Transmission};
 
 /// A message of a frame at one receiver. `ADDRESSED`: whether the frame is not simply for everyone.
 struct AtReceiver<'a, P: Protocol, const ADDRESSED: bool> {
@@ -83,18 +83,23 @@ impl<P: Protocol> Air<P> {
         &mut self,
         now: SimTime,
         aboard: &[Spoken<P::Heard>],
-        faults: &Faults,
+        place: Surroundings<'_>,
         observer: &mut impl Observer,
     ) {
         if aboard.iter().all(|spoken| spoken.to.is_none()) {
-            return self.transmit::<false>(now, aboard, faults, observer);
+            return self.transmit::<false>(now, aboard, place, observer);
         }
-        self.give_up_far(now, aboard, observer);
         let everyone = P::OVERHEARS || aboard.iter().any(|spoken| spoken.to.is_none());
+        if everyone || !self.medium.takes_far() {
+            self.give_up_far(now, aboard, observer);
+        }
         if !everyone {
             self.narrow(aboard);
+            if self.medium.takes_far() {
+                self.add_far(now, aboard, place);
+            }
         }
-        self.transmit::<true>(now, aboard, faults, observer);
+        self.transmit::<true>(now, aboard, place, observer);
         if !everyone {
             std::mem::swap(&mut self.listeners, &mut self.all_listeners);
             std::mem::swap(&mut self.hindrances, &mut self.all_hindrances);
@@ -129,6 +134,25 @@ impl<P: Protocol> Air<P> {
         }
     }
 
+    /// Adds those listeners for whom something in the frame is and who are out of range.
+    fn add_far(&mut self, now: SimTime, aboard: &[Spoken<P::Heard>], place: Surroundings<'_>) {
+        let sender = aboard[0].frame.sender;
+        for far in aboard.iter().filter_map(|spoken| spoken.to) {
+            if self.is_in_range(far) {
+                continue;
+            }
+            let there = place.world.position(far, now);
+            self.listeners.push(Listener {
+                id: far,
+                sender: self.position - there,
+            });
+            if place.faults.trouble_links() {
+                let loss = place.faults.link_loss((sender, self.position), (far, there));
+                self.hindrances.push(loss);
+            }
+        }
+    }
+
     /// Transmits the messages `aboard` to the present listeners, for whom they share one fate each. `ADDRESSED`: whether one at least
     /// is for one robot.
     // Inlined where a frame has one message, nearly always, the loops over what is aboard are gone.
@@ -138,13 +162,13 @@ impl<P: Protocol> Air<P> {
         &mut self,
         now: SimTime,
         aboard: &[Spoken<P::Heard>],
-        faults: &Faults,
+        place: Surroundings<'_>,
         observer: &mut impl Observer,
     ) {
         let Frame { sender, sequence, .. } = aboard[0].frame;
         let number = Numbers::next(&mut self.numbers[sender.index()].frame);
         if !self.hindrances.is_empty() {
-            self.hinder(sender, number, faults);
+            self.hinder(sender, number, place.faults);
         }
         let to = aboard[0]
             .to
@@ -161,7 +185,7 @@ impl<P: Protocol> Air<P> {
                 &self.reachable
             },
         };
-        self.medium.transmit(&frame, &mut self.fates);
+        self.medium.transmit(&frame, place.world, &mut self.fates);
         debug_assert_eq!(self.fates.len(), self.listeners.len(), "each listener has one fate");
         if self.prefetches {
             self.prefetch_fates(P::topic(aboard[0].frame.message.borrow()), observer);
@@ -187,6 +211,9 @@ impl<P: Protocol> Air<P> {
         }
         if !self.fates.open.is_empty() {
             self.await_fates::<ADDRESSED>(aboard);
+        }
+        if !self.fates.conclusions.is_empty() {
+            self.tell_conclusions(now, observer);
         }
     }
 

@@ -17,9 +17,7 @@ use std::collections::BTreeMap;
 use desim::engine::{ActorId, SimTime, Span, Streams};
 use desim::geometry::Vec2;
 use desim::quantity::{NonNegative, Positive, Probability};
-use desim::radio::{
-    Disk, Fate, Fates, FrameId, LatencyConfig, Listener, LossConfig, Medium, RadioConfig, Transmission,
-};
+use desim::radio::{Disk, DiskConfig, Fate, Fates, FrameId, LatencyConfig, Listener, LossConfig, Medium, Transmission};
 
 /// Time between two frames of a sender.
 const INTERVAL: f64 = 0.1;
@@ -51,11 +49,11 @@ fn gilbert_elliott([good_to_bad, bad_to_good]: [f64; 2], [good_loss, bad_loss]: 
 }
 
 /// A radio that loses frames by `loss` and delivers the others at once.
-fn losing(loss: LossConfig) -> RadioConfig {
-    RadioConfig {
+fn losing(loss: LossConfig) -> DiskConfig {
+    DiskConfig {
         loss,
         latency: LatencyConfig::Constant(non_negative(0.0)),
-        ..RadioConfig::default()
+        ..DiskConfig::default()
     }
 }
 
@@ -86,7 +84,7 @@ impl Channel {
         };
         *number += 1;
         let mut fates = Fates::default();
-        self.disk.transmit(&frame, &mut fates);
+        self.disk.transmit(&frame, &Vec::new(), &mut fates);
         let fates: BTreeMap<ActorId, Fate> = fates.drain().collect();
         for listener in listeners {
             receive(listener.id, fates[&listener.id]);
@@ -94,7 +92,7 @@ impl Channel {
     }
 }
 
-fn medium(config: &RadioConfig, robots: u32) -> Channel {
+fn medium(config: &DiskConfig, robots: u32) -> Channel {
     Channel {
         disk: Disk::new(config, &Streams::new(20_260_101, 0), robots as usize),
         numbers: vec![0; robots as usize],
@@ -115,7 +113,7 @@ fn sent(frame: u32) -> SimTime {
 }
 
 /// What became of `frames` frames from robot 0 at each of `receivers` robots, 1 m away: by receiver, then by frame.
-fn fates(config: &RadioConfig, receivers: u32, frames: u32) -> Vec<Vec<Fate>> {
+fn fates(config: &DiskConfig, receivers: u32, frames: u32) -> Vec<Vec<Fate>> {
     let mut medium = medium(config, receivers + 1);
     let mut fates = vec![Vec::with_capacity(frames as usize); receivers as usize];
     for frame in 0..frames {

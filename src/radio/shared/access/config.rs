@@ -3,12 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Scheme;
 use super::aloha::{Aloha, Slotted};
 use super::csma_ca::{self, CsmaCa};
 use super::dcf::{self, Dcf};
 use super::paced::{Pace, Paced};
 use super::tdma::Tdma;
-use super::Scheme;
 use crate::engine::Span;
 use crate::quantity::{NonNegative, Positive, Probability};
 use crate::radio::technology::{Phy, TechnologyConfig, WifiStandard};
@@ -226,12 +226,18 @@ impl AccessConfig {
             Self::None | Self::Paced(_) => {}
             Self::Aloha { duty_cycle } => {
                 if duty_cycle.is_some_and(|share| share.get() == 0.0) {
-                    problem("duty_cycle", "a duty cycle of 0 lets nobody send; use a share above 0, or None for no limit".to_owned());
+                    problem(
+                        "duty_cycle",
+                        "a duty cycle of 0 lets nobody send; use a share above 0, or None for no limit".to_owned(),
+                    );
                 }
             }
             Self::SlottedAloha { probability, .. } => {
                 if probability.get() == 0.0 {
-                    problem("probability", "with probability 0 nobody ever sends; use one above 0".to_owned());
+                    problem(
+                        "probability",
+                        "with probability 0 nobody ever sends; use one above 0".to_owned(),
+                    );
                 }
             }
             Self::Tdma {
@@ -247,18 +253,27 @@ impl AccessConfig {
                 }
                 let all = f64::from(slots) * slot.get();
                 if let Some(frame) = frame.map(Positive::get).filter(|frame| *frame < all) {
-                    let message = format!("a frame of {frame} s is shorter than its {slots} slots of {} s; expected at least {all} s", slot.get());
+                    let message = format!(
+                        "a frame of {frame} s is shorter than its {slots} slots of {} s; expected at least {all} s",
+                        slot.get()
+                    );
                     problem("frame", message);
                 }
                 if let Some(guard) = guard.map(NonNegative::get).filter(|guard| *guard >= slot.get()) {
-                    let message = format!("a guard of {guard} s leaves nothing of a slot of {} s; make it shorter", slot.get());
+                    let message = format!(
+                        "a guard of {guard} s leaves nothing of a slot of {} s; make it shorter",
+                        slot.get()
+                    );
                     problem("guard", message);
                 }
             }
             Self::CsmaCa(config) => {
                 let (least, most) = (config.min_exponent, config.max_exponent);
                 if most > 20 {
-                    problem("max_exponent", format!("an exponent of {most} is out of range: expected 0 to 20"));
+                    problem(
+                        "max_exponent",
+                        format!("an exponent of {most} is out of range: expected 0 to 20"),
+                    );
                 }
                 if least > most {
                     let message = format!("min_exponent {least} is above max_exponent {most}; exchange them");
@@ -267,10 +282,16 @@ impl AccessConfig {
             }
             Self::Dcf(config) => {
                 if let Some((least, most)) = config.window.filter(|(least, most)| least > most) {
-                    problem("window", format!("the window is {least} slots at first and {most} at most; exchange them"));
+                    problem(
+                        "window",
+                        format!("the window is {least} slots at first and {most} at most; exchange them"),
+                    );
                 }
                 if config.attempts == Some(0) {
-                    problem("attempts", "a frame that is sent 0 times never arrives; expected at least 1".to_owned());
+                    problem(
+                        "attempts",
+                        "a frame that is sent 0 times never arrives; expected at least 1".to_owned(),
+                    );
                 }
             }
         }
@@ -291,7 +312,13 @@ impl AccessConfig {
     }
 
     /// The state machines of `robots` robots, whose clocks drift by at most `drift`, a share.
-    pub(in crate::radio::shared) fn scheme(&self, technology: &TechnologyConfig, phy: &Phy, robots: usize, drift: f64) -> Box<dyn Scheme> {
+    pub(in crate::radio::shared) fn scheme(
+        &self,
+        technology: &TechnologyConfig,
+        phy: &Phy,
+        robots: usize,
+        drift: f64,
+    ) -> Box<dyn Scheme> {
         let seconds = |quantity: NonNegative| Span::from_secs(quantity.get());
         match self {
             Self::None => Box::new(Aloha::new(None, robots)),
@@ -354,7 +381,9 @@ impl DcfConfig {
     fn timing(&self, technology: &TechnologyConfig, phy: &Phy) -> dcf::Timing {
         let is_g = matches!(technology, TechnologyConfig::Wifi(config) if config.standard == WifiStandard::G);
         let micros = |micros: u64| Span::from_nanos(1_000 * micros);
-        let slot = self.slot.map_or(micros(if is_g { 9 } else { 20 }), |slot| Span::from_secs(slot.get()));
+        let slot = self
+            .slot
+            .map_or(micros(if is_g { 9 } else { 20 }), |slot| Span::from_secs(slot.get()));
         let sifs = self.sifs.map_or(micros(10), |sifs| Span::from_secs(sifs.get()));
         let (least_window, most_window) = self.window.unwrap_or(if is_g { (15, 1023) } else { (31, 1023) });
         let difs = sifs + slot * 2;
@@ -367,7 +396,9 @@ impl DcfConfig {
             _ => acknowledgement,
         };
         // Until the receiver of an acknowledgement has its preamble and header (aPHY-RX-START-Delay).
-        let start = answer.and_then(|answer| answer.sections().next()).map_or(Span::ZERO, |first| first.airtime);
+        let start = answer
+            .and_then(|answer| answer.sections().next())
+            .map_or(Span::ZERO, |first| first.airtime);
         dcf::Timing {
             slot,
             sifs,

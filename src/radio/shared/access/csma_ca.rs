@@ -101,7 +101,11 @@ impl Scheme for CsmaCa {
             // The spacing runs from the acknowledgement on, where there is one.
             Outcome::Acknowledged | Outcome::Sent => {
                 let is_long = station.head.is_some_and(|head| head.airtime > timing.longest_short);
-                let spacing = if is_long { timing.long_spacing } else { timing.short_spacing };
+                let spacing = if is_long {
+                    timing.long_spacing
+                } else {
+                    timing.short_spacing
+                };
                 Next::Done(now + spacing)
             }
         }

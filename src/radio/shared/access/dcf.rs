@@ -104,7 +104,10 @@ impl Dcf {
                 let understood = station.understands(&heard, burst);
                 if understood == Some(false) {
                     clear = heard.ends + timing.eifs;
-                } else if understood == Some(true) && timing.acknowledges && is_to_another(&burst.content, station.robot) {
+                } else if understood == Some(true)
+                    && timing.acknowledges
+                    && is_to_another(&burst.content, station.robot)
+                {
                     // It says that an acknowledgement follows, whether that can be heard here or not.
                     clear = clear + timing.sifs + timing.acknowledgement;
                 }
@@ -146,7 +149,11 @@ impl Scheme for Dcf {
             return Step::Wait(ends);
         }
         way.counts = false;
-        if station.head.is_some() { Step::Send(now) } else { Step::Rest }
+        if station.head.is_some() {
+            Step::Send(now)
+        } else {
+            Step::Rest
+        }
     }
 
     fn after(&mut self, now: SimTime, outcome: Outcome, station: &mut Station<'_>) -> Next {

@@ -63,7 +63,9 @@ impl Scheme for Paced {
         if station.head.is_none() {
             return Step::Rest;
         }
-        let Pace { listens, unit, most, .. } = self.pace;
+        let Pace {
+            listens, unit, most, ..
+        } = self.pace;
         let due = self.listens[robot].take();
         let Some(listening) = listens else {
             let turn = self.turn(now, station);

@@ -31,7 +31,8 @@ impl Tdma {
 
     /// When the robot believes that it is its turn in frame `number`: half a guard into its slot, by its clock.
     fn turn(&self, number: u64, robot: ActorId, skew: f64) -> SimTime {
-        let ideal = SimTime::ZERO + self.frame * number + self.slot * (u64::from(robot.0) % self.slots) + self.guard / 2;
+        let ideal =
+            SimTime::ZERO + self.frame * number + self.slot * (u64::from(robot.0) % self.slots) + self.guard / 2;
         if self.resync == Span::ZERO || skew == 0.0 {
             return ideal;
         }
