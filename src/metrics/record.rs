@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::{Pose, Vec2};
-use crate::radio::Reach;
+use crate::radio::{Placed, Reach};
 use crate::spool::{Entry, Spool, Spooled, entry};
 
 use super::detection::{DetectionRecord, ObservedFailure, StatusTrace, Suspicion};
@@ -132,17 +132,16 @@ impl TrialRecord {
     }
 
     /// The places at the end of every two robots that hear each other as `reach` says.
-    pub fn links_at_end(&self, reach: &Reach) -> impl Iterator<Item = (Vec2, Vec2)> {
-        let robots = || {
-            (0..)
-                .map(ActorId)
-                .zip(self.robots.iter().map(|robot| robot.pose.position))
-        };
-        robots().flat_map(move |robot| {
-            let others = robots().skip(robot.0.index() + 1);
-            let linked = others.filter(move |other| reach.linked(robot, *other));
-            linked.map(move |other| (robot.1, other.1))
-        })
+    #[must_use]
+    pub fn links_at_end(&self, reach: &Reach) -> Vec<(Vec2, Vec2)> {
+        let places = self.robots.iter().map(|robot| robot.pose.position);
+        let robots: Vec<Placed> = (0..).map(ActorId).zip(places).collect();
+        let mut links = Vec::new();
+        for (index, &robot) in robots.iter().enumerate() {
+            let linked = robots[index + 1..].iter().filter(|other| reach.linked(robot, **other));
+            links.extend(linked.map(|other| (robot.1, other.1)));
+        }
+        links
     }
 
     /// Robots that ended in another role than the one that all start in: those that the mission took. `None` where

@@ -19,7 +19,7 @@ pub fn draw(scene: &Scene, record: &TrialRecord, reach: &Reach) -> Document {
     let mut canvas = Canvas::new(size, &scene.name, &subtitle(record));
     let robots = &record.robots;
     obstacles(&mut canvas, &scene.arena.obstacles);
-    let links: Vec<_> = record.links_at_end(reach).collect();
+    let links = record.links_at_end(reach);
     canvas.lines(links.iter().copied(), style::link(links.len()));
     let targets = worked_for(robots);
     for &target in &targets {
