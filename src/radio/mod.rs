@@ -33,7 +33,7 @@ pub use config::{LatencyConfig, LossConfig, RadioConfig, SensingConfig};
 pub use disk::Disk;
 pub use law::{LossChain, LossRun};
 pub use medium::{Fate, Fates, FrameId, Listener, Medium, RadioKind, Transmission};
-pub use modulation::Modulation;
+pub use modulation::{ErrorTable, Modulation};
 pub use technology::{Phy, Section, TechnologyConfig, Waveform};
 
 pub(crate) use medium::Arrival;
