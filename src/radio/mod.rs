@@ -41,7 +41,7 @@ pub use law::{LossChain, LossRun};
 pub use medium::{
     Account, Conclusion, Fate, Fates, FrameId, Listener, Medium, Outcome, RadioKind, Reading, Transmission,
 };
-pub use modulation::Modulation;
+pub use modulation::{ErrorTable, Modulation};
 pub use reach::{Links, Placed, Reach};
 pub use shared::{Shared, SharedConfig};
 pub use site::{Obstacle, Places, RadioSite, Shape};

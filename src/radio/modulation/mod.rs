@@ -9,6 +9,11 @@ mod cck;
 mod dsss;
 mod ofdm;
 mod oqpsk;
+mod table;
+#[cfg(test)]
+mod tests;
+
+pub use table::ErrorTable;
 
 use libm::{exp, expm1, log1p, pow};
 use schemars::JsonSchema;

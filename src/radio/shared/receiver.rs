@@ -8,9 +8,9 @@ use super::access::AccessConfig;
 use super::burst::{Burst, Content};
 use super::ear::{Ear, Heard};
 use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
-use crate::radio::LossCause;
 use crate::radio::draw::unit_interval;
 use crate::radio::technology::{Phy, Waveform};
+use crate::radio::{ErrorTable, LossCause, Modulation};
 
 /// What survives the bit errors is drawn from here: by sender, receiver and frame. Acknowledgements have their own draws.
 const ERRORS: Purpose = Purpose::new("radio.errors");
@@ -35,6 +35,8 @@ pub(super) struct Receiver {
     /// The share of frames that nothing modelled drops.
     kept: f64,
     phy: Phy,
+    /// How its modulations survive.
+    tables: Vec<(Modulation, ErrorTable)>,
     errors: KeyedStreams,
     acknowledgements: KeyedStreams,
 }
@@ -52,6 +54,7 @@ impl Receiver {
             orthogonal: access.is_orthogonal(),
             latency: access.latency(),
             kept: phy.infrared.map_or(1.0, |infrared| 1.0 - infrared.drop),
+            tables: tables(phy),
             phy: phy.clone(),
             errors: streams.keyed(ERRORS),
             acknowledgements: streams.keyed(ACKNOWLEDGEMENTS),
@@ -180,11 +183,16 @@ impl Receiver {
                 } else {
                     last.since(first).as_nanos() as f64 / section.airtime.as_nanos() as f64
                 };
-                sum += f64::from(section.bits) * share * section.modulation.log_survival(sinr);
+                sum += f64::from(section.bits) * share * self.log_survival(section.modulation, sinr);
             }
             begins = ends;
         }
         sum
+    }
+
+    fn log_survival(&self, modulation: Modulation, sinr: f64) -> f64 {
+        let table = self.tables.iter().find(|table| table.0 == modulation);
+        table.map_or(0.0, |table| f64::from(table.1.log_survival(sinr as f32)))
     }
 
     fn draw(&self, burst: &Burst, robot: ActorId) -> f64 {
@@ -200,6 +208,22 @@ impl Receiver {
         };
         unit_interval(bits)
     }
+}
+
+/// The tables of all that frames and acknowledgements are sent by, and in which bits can go wrong.
+fn tables(phy: &Phy) -> Vec<(Modulation, ErrorTable)> {
+    let mut tables: Vec<(Modulation, ErrorTable)> = Vec::new();
+    let acknowledgement = phy.acknowledgement();
+    let sections = phy
+        .sections(1)
+        .chain(acknowledgement.iter().flat_map(|answer| answer.sections()));
+    for section in sections {
+        let modulation = section.modulation;
+        if modulation != Modulation::None && tables.iter().all(|table| table.0 != modulation) {
+            tables.push((modulation, ErrorTable::new(modulation)));
+        }
+    }
+    tables
 }
 
 /// The so manieth 64 bits of a stream, from 0.

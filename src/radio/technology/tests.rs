@@ -17,7 +17,7 @@ fn lora(spreading: u8) -> LoRaConfig {
     }
 }
 
-fn airtime_ns(config: TechnologyConfig, payload: u32) -> u64 {
+fn airtime_ns(config: &TechnologyConfig, payload: u32) -> u64 {
     config.phy().airtime(payload).as_nanos()
 }
 
@@ -50,7 +50,7 @@ fn presets() -> Vec<TechnologyConfig> {
 
 #[test]
 fn an_802154_frame_of_20_bytes_is_on_air_for_1184_us_and_one_of_100_for_3744() {
-    let airtime = |payload| airtime_ns(TechnologyConfig::default(), payload);
+    let airtime = |payload| airtime_ns(&TechnologyConfig::default(), payload);
     assert_eq!(
         [0, 20, 100, 116].map(airtime),
         [544_000, 1_184_000, 3_744_000, 4_256_000]
@@ -66,16 +66,16 @@ fn an_802154_frame_of_20_bytes_is_on_air_for_1184_us_and_one_of_100_for_3744() {
 #[test]
 fn an_80211b_frame_has_a_preamble_a_header_at_1_mbps_and_the_rest_in_whole_microseconds() {
     let of = |config| TechnologyConfig::Wifi(config);
-    assert_eq!(airtime_ns(of(wifi(WifiStandard::B, 1e6)), 20), 640_000);
-    assert_eq!(airtime_ns(of(wifi(WifiStandard::B, 2e6)), 20), 416_000);
+    assert_eq!(airtime_ns(&of(wifi(WifiStandard::B, 1e6)), 20), 640_000);
+    assert_eq!(airtime_ns(&of(wifi(WifiStandard::B, 2e6)), 20), 416_000);
     // 448 bits at 5.5 Mb/s are 81.45 µs; 8288 at 11 Mb/s 753.45.
-    assert_eq!(airtime_ns(of(wifi(WifiStandard::B, 5.5e6)), 20), 274_000);
-    assert_eq!(airtime_ns(of(wifi(WifiStandard::B, 11e6)), 1000), 946_000);
+    assert_eq!(airtime_ns(&of(wifi(WifiStandard::B, 5.5e6)), 20), 274_000);
+    assert_eq!(airtime_ns(&of(wifi(WifiStandard::B, 11e6)), 1000), 946_000);
     let short = WifiConfig {
         preamble: WifiPreamble::Short,
         ..wifi(WifiStandard::B, 11e6)
     };
-    assert_eq!(airtime_ns(of(short.clone()), 1000), 850_000);
+    assert_eq!(airtime_ns(&of(short.clone()), 1000), 850_000);
 
     let parts = |config| {
         let sections = TechnologyConfig::Wifi(config).phy().sections(1000);
@@ -114,7 +114,7 @@ fn an_80211b_frame_has_a_preamble_a_header_at_1_mbps_and_the_rest_in_whole_micro
 
 #[test]
 fn an_80211g_frame_fills_symbols_of_4_us_and_ends_with_a_pause_of_6() {
-    let airtime = |rate| airtime_ns(TechnologyConfig::Wifi(wifi(WifiStandard::G, rate)), 20);
+    let airtime = |rate| airtime_ns(&TechnologyConfig::Wifi(wifi(WifiStandard::G, rate)), 20);
     assert_eq!([6e6, 24e6, 54e6].map(airtime), [106_000, 46_000, 38_000]);
     let phy = TechnologyConfig::Wifi(wifi(WifiStandard::G, 24e6)).phy();
     let parts: Vec<_> = phy
@@ -154,7 +154,7 @@ fn wifi_acknowledges_at_a_rate_that_every_station_knows_unless_told_otherwise() 
 fn an_advertisement_is_on_air_for_128_us_and_8_for_each_byte() {
     let airtime = |payload| {
         let config = BleAdvertisingConfig::default();
-        airtime_ns(TechnologyConfig::BleAdvertising(config), payload)
+        airtime_ns(&TechnologyConfig::BleAdvertising(config), payload)
     };
     assert_eq!([0, 31].map(airtime), [128_000, 376_000]);
     let phy = TechnologyConfig::BleAdvertising(BleAdvertisingConfig::default()).phy();
@@ -164,7 +164,7 @@ fn an_advertisement_is_on_air_for_128_us_and_8_for_each_byte() {
 
 #[test]
 fn a_lora_frame_is_on_air_as_the_data_sheet_says() {
-    let airtime = |spreading, payload| airtime_ns(TechnologyConfig::LoRa(lora(spreading)), payload);
+    let airtime = |spreading, payload| airtime_ns(&TechnologyConfig::LoRa(lora(spreading)), payload);
     assert_eq!(
         [7, 8, 9, 10, 11, 12].map(|spreading| airtime(spreading, 20)),
         [
@@ -182,7 +182,7 @@ fn a_lora_frame_is_on_air_as_the_data_sheet_says() {
         low_data_rate: Some(true),
         ..lora(7)
     };
-    let more = airtime_ns(TechnologyConfig::LoRa(slow), 20) - airtime(7, 20);
+    let more = airtime_ns(&TechnologyConfig::LoRa(slow), 20) - airtime(7, 20);
     assert_eq!(more, 5 * 2 * 1_024_000);
     // Nothing but the last six symbols of the preamble, and what comes after them, matters.
     let sections: Vec<_> = TechnologyConfig::LoRa(lora(7)).phy().sections(20).collect();
@@ -196,19 +196,22 @@ fn a_lora_frame_is_on_air_as_the_data_sheet_says() {
 #[test]
 fn light_takes_the_time_that_firmware_takes() {
     assert_eq!(
-        airtime_ns(TechnologyConfig::Kilobot(KilobotConfig::default()), 3),
+        airtime_ns(&TechnologyConfig::Kilobot(KilobotConfig::default()), 3),
         4_160_000
     );
     let later = KilobotConfig {
         bit_cycles: 269,
         ..KilobotConfig::default()
     };
-    assert_eq!(airtime_ns(TechnologyConfig::Kilobot(later), 9), 4_371_250);
+    assert_eq!(airtime_ns(&TechnologyConfig::Kilobot(later), 9), 4_371_250);
     assert_eq!(
-        airtime_ns(TechnologyConfig::EPuck(EPuckConfig::default()), 2),
+        airtime_ns(&TechnologyConfig::EPuck(EPuckConfig::default()), 2),
         5_000_000
     );
-    assert_eq!(airtime_ns(TechnologyConfig::ArgosRab(ArgosRabConfig::default()), 10), 0);
+    assert_eq!(
+        airtime_ns(&TechnologyConfig::ArgosRab(ArgosRabConfig::default()), 10),
+        0
+    );
 }
 
 #[test]
@@ -258,7 +261,7 @@ fn a_frame_lasts_as_long_as_its_sections_and_no_shorter_than_one_with_less_in_it
 /// By more digits than RADIO's own: −95 − 0.5087; −95 − 10.944; kTB at 22 MHz −100.551, at 20 MHz −100.965, at 125 kHz −123.006.
 #[test]
 fn noise_and_sensitivity_are_tied_by_each_technologys_own_definition() {
-    let figures = |config: TechnologyConfig| {
+    let figures = |config: &TechnologyConfig| {
         let phy = config.phy();
         [phy.noise, phy.sensitivity]
     };
@@ -267,12 +270,12 @@ fn noise_and_sensitivity_are_tied_by_each_technologys_own_definition() {
             assert!((found - expected).abs() < 2e-3, "{found} is not {expected}");
         }
     };
-    near(figures(TechnologyConfig::default()), [-95.5087, -95.0]);
+    near(figures(&TechnologyConfig::default()), [-95.5087, -95.0]);
     near(
-        figures(TechnologyConfig::BleAdvertising(BleAdvertisingConfig::default())),
+        figures(&TechnologyConfig::BleAdvertising(BleAdvertisingConfig::default())),
         [-105.944, -95.0],
     );
-    let wifi = |standard, rate| figures(TechnologyConfig::Wifi(wifi(standard, rate)));
+    let wifi = |standard, rate| figures(&TechnologyConfig::Wifi(wifi(standard, rate)));
     for (rate, required) in [(1e6, -3.089), (2e6, 1.553), (5.5e6, 4.083), (11e6, 7.093)] {
         near(wifi(WifiStandard::B, rate), [-93.551, -93.551 + required]);
     }
@@ -282,7 +285,7 @@ fn noise_and_sensitivity_are_tied_by_each_technologys_own_definition() {
     }
     for (spreading, sensitivity) in (7..=12).zip([-124.506, -127.006, -129.506, -132.006, -134.506, -137.006]) {
         near(
-            figures(TechnologyConfig::LoRa(lora(spreading))),
+            figures(&TechnologyConfig::LoRa(lora(spreading))),
             [-117.006, sensitivity],
         );
     }

@@ -27,8 +27,8 @@ const SENSITIVITY: [(u32, f64); 2] = [(1024, 0.08), (1000, 0.1)];
 
 /// A Wi-Fi station that is told its rate, 802.11b or g.
 ///
-/// A frame carries the payload behind a MAC header of 24 bytes and 8 bytes of link control, and a check sum of 4. It is on air for 192 µs (short preamble: 96)
-/// + ⌈8 · bytes/rate⌉ µs in b, for 20 + 4⌈(22 + 8 · bytes)/(4 · rate)⌉ + 6 µs in g. Its noise is that of a bandwidth of 22 MHz in b and 20 in g and of the noise
+/// A frame carries the payload behind a MAC header of 24 bytes and 8 bytes of link control, and a check sum of 4. It is on air for 192 µs (short preamble: 96) and
+/// ⌈8 · bytes/rate⌉ µs in b, for 20 + 4⌈(22 + 8 · bytes)/(4 · rate)⌉ + 6 µs in g. Its noise is that of a bandwidth of 22 MHz in b and 20 in g and of the noise
 /// figure, and its sensitivity is where 8 % of frames of 1024 bytes are lost in b, 10 % of 1000 bytes in g.
 ///
 /// As in ns-3, a receiver locks on frames of 4 dB or more, although the lowest rates would decode less; it sends with 16.02 dBm, a frame that is 5 dB above another
