@@ -12,7 +12,7 @@ use super::burst::Bursts;
 use super::ear::Ear;
 use super::jammer::{Jammers, NoiseConfig};
 use super::link::LinkBudget;
-use super::receiver::{Receiver, milliwatts};
+use super::receiver::Receiver;
 use super::station::Radio;
 use super::{Shared, link, range};
 use crate::engine::{Purpose, Span, Streams};
@@ -391,7 +391,7 @@ impl Shared {
         Self {
             budget: Arc::new(config.budget(&phy, site)),
             scheme: access.scheme(&config.technology, &phy, robots, drift),
-            receiver: Receiver::new(&phy, &access, milliwatts(jammers.background()), &site.streams),
+            receiver: Receiver::new(&phy, &access, jammers.background(), &site.streams),
             jammers,
             sensing: Sensing::new(&config.sensing, site.streams),
             draws: Draws::new(&site.streams, robots),

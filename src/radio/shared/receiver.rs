@@ -66,9 +66,9 @@ impl Receiver {
         self.orthogonal
     }
 
-    /// Whether the energy of all that was on air at any time from `from` to before `until` says that the channel is busy. Light of any strength does.
-    pub fn senses(&self, ear: &Ear, from: SimTime, until: SimTime) -> bool {
-        let powers = ear.during(0, from, until).map(|heard| heard.power);
+    /// Whether the energy of all that is on air at `now` says that the channel is busy. Light of any strength does.
+    pub fn senses(&self, ear: &Ear, now: SimTime) -> bool {
+        let powers = ear.during(0, now, now + INSTANT).map(|heard| heard.power);
         match self.assess {
             Some(assess) => self.noise + powers.sum::<f64>() >= assess,
             None => self.phy.infrared.is_some() && powers.count() > 0,

@@ -73,7 +73,7 @@ impl Scheme for CsmaCa {
             way.exponent = timing.min_exponent;
             return self.back_off(now, station);
         }
-        let busy = station.answers || station.receiver.senses(station.ear, now - timing.assessment, now);
+        let busy = station.answers || station.receiver.senses(station.ear, now);
         if !busy {
             way.contends = false;
             return Step::Send(now + timing.turnaround);

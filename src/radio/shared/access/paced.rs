@@ -72,7 +72,7 @@ impl Scheme for Paced {
             return if turn == now { Step::Send(now) } else { Step::Wait(turn) };
         };
         if due == Some(now) {
-            if !station.receiver.senses(station.ear, now - listening, now) {
+            if !station.receiver.senses(station.ear, now) {
                 return Step::Send(now);
             }
             let wait = Span::from_secs(unit.as_secs() * f64::from(station.count(most)));
