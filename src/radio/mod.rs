@@ -12,6 +12,10 @@
 //! listeners are named; the frames lost at 10 % are among those lost at 30 %; and a frame that survives under two loss
 //! settings has the same latency under both. A model that needs no randomness opens no stream.
 //!
+//! # The physics of a radio
+//! Formulas, each a pure function of what it is handed, for media to be made of: [`propagation`] says what is left of a signal at a receiver, [`technology`] what a radio hears and how long its frames are on air,
+//! and [`Modulation`] how many of their bits go wrong.
+//!
 //! # Room for what is not here
 //! Propagation (path loss, shadowing, walls) replaces the disk: [`Reach::Links`] then says who counts as in range of whom, for all of a run. What overlaps where follows from the places
 //! of senders and listeners, which frames come with, and of all others ([`Places`]), not from who is offered what: a robot jams also those that it says nothing to. Each new reason for a loss is one more

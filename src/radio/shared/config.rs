@@ -225,6 +225,7 @@ impl SharedConfig {
         };
         let mut found = within("technology", self.technology.problems());
         found.extend(within("path_loss", self.path_loss.problems()));
+        found.extend(within("fading", self.fading.problems()));
         if let Some(access) = &self.access {
             found.extend(within("access", access.problems(robots)));
         }
@@ -261,7 +262,7 @@ impl SharedConfig {
         let spread = self.spread(&site.streams, site.robots, phy.transmit_power);
         let sigma = self.shadowing.as_ref().map_or(0.0, |shadowing| shadowing.sigma.get());
         let fading = Fading::new(&self.fading, &site.streams, phy.frequency);
-        let threshold = range::threshold_dbm(phy, &fading, self.range_payload.into());
+        let threshold = range::threshold_dbm(phy, &self.fading, self.range_payload.into());
         let noise = phy.noise.max(phy.sensitivity - QUIET_DB);
         let strongest = |levels: &[f64]| levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         LinkBudget {
@@ -305,7 +306,7 @@ impl SharedConfig {
             attenuation: obstacle.attenuation.filter(|_| !blocks),
             ..*obstacle
         });
-        Some(Walls::new(obstacles.collect(), loss))
+        Some(Walls::new(&obstacles.collect::<Vec<_>>(), loss))
     }
 
     /// Whether frames take time on air.

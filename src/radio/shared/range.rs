@@ -1,6 +1,6 @@
 //! From which mean power on two robots count as in range.
 
-use crate::radio::propagation::Fading;
+use crate::radio::propagation::FadingConfig;
 use crate::radio::technology::Phy;
 
 /// Least and greatest level over the noise between which the threshold is looked for, dB.
@@ -8,7 +8,7 @@ const SEARCHED_DB: [f64; 2] = [-60.0, 120.0];
 
 /// The mean power at which a lone frame with so much payload comes through with a probability of one half over fading, dBm. Where nothing goes wrong
 /// but by a level below the sensitivity, that is the sensitivity itself, as far as fading lets it.
-pub(super) fn threshold_dbm(phy: &Phy, fading: &Fading, payload: u32) -> f64 {
+pub(super) fn threshold_dbm(phy: &Phy, fading: &FadingConfig, payload: u32) -> f64 {
     let quiet = phy.noise == f64::NEG_INFINITY;
     // A level over the noise, or over the sensitivity where there is none.
     let over = if quiet { phy.sensitivity } else { phy.noise };
@@ -25,7 +25,7 @@ pub(super) fn threshold_dbm(phy: &Phy, fading: &Fading, payload: u32) -> f64 {
         let mean = super::receiver::ratio(db);
         fading.mean_of(|gain| success(mean * gain)) >= 0.5
     };
-    if fading.is_none() && quiet {
+    if *fading == FadingConfig::None && quiet {
         return over;
     }
     let [mut low, mut high] = SEARCHED_DB;

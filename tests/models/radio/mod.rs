@@ -8,6 +8,7 @@
 
 mod latency;
 mod loss;
+mod propagation;
 mod sensing;
 mod statistics;
 mod timeouts;
