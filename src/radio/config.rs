@@ -10,6 +10,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
 use super::disk_config::{DiskConfig, LatencyConfig, LossConfig, SensingConfig, WallsConfig};
+use super::medium::RadioKind as _;
 use super::propagation::{FadingConfig, PathLossConfig, ShadowingConfig};
 use super::shared::{AccessConfig, CaptureConfig, NoiseConfig, SharedConfig};
 use super::technology::TechnologyConfig;
@@ -66,6 +67,15 @@ impl RadioConfig {
     #[must_use]
     pub fn takes_time(&self) -> bool {
         self.shared().is_some_and(SharedConfig::takes_time)
+    }
+
+    /// The longest payload of a message that a frame can carry, in bytes, for a protocol with so many topics, whose frames carry one message each or several. `None`:
+    /// any.
+    #[must_use]
+    pub fn longest_message(&self, topics: usize, several: bool) -> Option<u32> {
+        let shared = self.shared()?;
+        let [_, header] = shared.header_bytes(topics, several)?;
+        Some(shared.phy().max_payload.saturating_sub(header.into()))
     }
 
     /// How many frames with so much payload a robot can put on air in a second that has it for itself, roughly; over a disk, where they take no time, none is

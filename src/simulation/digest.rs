@@ -134,6 +134,8 @@ mod tests {
 
     fn digest(change: impl FnOnce(&mut Digest, &mut Input<()>, &mut Output<()>)) -> u128 {
         let mut input = Input {
+            powers: Vec::new(),
+            outcomes: Vec::new(),
             me: ActorId(1),
             wake: Wake::ControlStep,
             inbox: vec![reception(5, 1), reception(6, 2)],

@@ -192,7 +192,9 @@ fn nothing_crosses_a_partition_and_all_else_arrives() {
 fn a_burst_takes_its_share_of_what_its_links_carry_and_leaves_the_channel_as_it_was() {
     let lossy = |faults: &str| {
         let mut scenario = heartbeats(2, faults);
-        scenario.radio.loss = desim::radio::LossConfig::Bernoulli(desim::quantity::Probability::new(0.2));
+        let mut radio = scenario.radio.disk().into_owned();
+        radio.loss = desim::radio::LossConfig::Bernoulli(desim::quantity::Probability::new(0.2));
+        scenario.radio = radio.into();
         run(&scenario)
     };
     let record = lossy("[Burst(loss: 0.3)]");

@@ -17,4 +17,5 @@ mod radio;
 mod reach;
 mod scaling;
 mod sends;
+mod shared;
 mod wandering;

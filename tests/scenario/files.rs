@@ -110,7 +110,7 @@ fn an_override_sets_a_field_that_the_file_has_with_or_without_the_names_of_varia
         ));
     }
     assert_eq!(with(&["swarm.robots=60"]).swarm.robots, 60);
-    let LossConfig::Bernoulli(loss) = with(&["radio.loss.Bernoulli=0.3"]).radio.loss else {
+    let LossConfig::Bernoulli(loss) = with(&["radio.loss.Bernoulli=0.3"]).radio.disk().loss else {
         panic!("the loss model has changed");
     };
     assert!((loss.get() - 0.3).abs() < 1e-12);
@@ -133,7 +133,7 @@ fn an_override_replaces_a_whole_value_and_the_last_one_counts() {
         "radio.latency=Constant(0.3)",
         "radio.latency=LogNormal(median: 0.02, sigma: 0.5)",
     ]);
-    assert!(matches!(scenario.radio.latency, LatencyConfig::LogNormal { .. }));
+    assert!(matches!(scenario.radio.disk().latency, LatencyConfig::LogNormal { .. }));
     assert_eq!(with(&["name=other"]).name, "other");
     assert_eq!(with(&["name=\"other\""]).name, "other");
 }

@@ -47,6 +47,8 @@ fn step(robot: &mut Rumor, step: u64, heard: &[(u32, Message)]) -> Output<Messag
         displacement: [0.0; 2],
     };
     let mut input = Input {
+        powers: Vec::new(),
+        outcomes: Vec::new(),
         me: ActorId(0),
         wake: Wake::ControlStep,
         inbox: heard.iter().map(receive).collect(),

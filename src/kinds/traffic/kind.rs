@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::{Source, To};
 use crate::engine::ActorId;
 use crate::kind::{Kind, Sections, Shared, Swarm};
-use crate::metrics::NotedFigure;
 use crate::quantity::Positive;
 
 /// Robots that send messages of one size, so often and to these; nothing else. They stand where they are.
@@ -137,6 +136,15 @@ impl Kind for TrafficConfig {
         {
             found.push(("to".to_owned(), absent(robot)));
         }
+        if let Some(most) = sections.radio.longest_message(1, false)
+            && u32::from(self.payload) > most
+        {
+            let message = format!(
+                "a payload of {} bytes never fits a frame of this radio, which carries at most {most}; make it shorter",
+                self.payload
+            );
+            found.push(("payload".to_owned(), message));
+        }
         if self.when == Timing::Saturated && !sections.radio.takes_time() {
             let message = "over this radio frames take no time, and it is never full; use Periodic or Poisson, or a radio with a technology";
             found.push(("when".to_owned(), message.to_owned()));
@@ -152,10 +160,5 @@ impl Kind for TrafficConfig {
             Timing::Saturated => sections.radio.most_frames_a_second(self.payload.into()),
         };
         share * frames
-    }
-
-    fn figures(&self) -> Vec<NotedFigure> {
-        let goodput = NotedFigure::per_second("goodput_bps", "goodput of the swarm", "bits");
-        vec![goodput.in_unit("bit/s").higher()]
     }
 }

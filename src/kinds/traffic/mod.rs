@@ -12,7 +12,7 @@ use tokio_util::codec::{Decoder, Encoder};
 pub use kind::{Recipients, Senders, Timing, TrafficConfig};
 
 use crate::engine::{ActorId, SimTime, Span};
-use crate::protocol::{Address, CodecError, Input, Output, Protocol, TimerId, Wake};
+use crate::protocol::{CodecError, Input, Output, Protocol, TimerId, Wake};
 
 /// A message of so many bytes, whatever they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl Decoder for LoadCodec {
     }
 }
 
-/// A robot that sends as its settings say, and counts what it gets.
+/// A robot that sends as its settings say.
 #[derive(Clone, Debug)]
 pub struct Source {
     timing: Timing,
@@ -98,11 +98,6 @@ impl Protocol for Source {
     const HEEDS_OUTCOMES: bool = true;
 
     fn step(&mut self, now: SimTime, input: &mut Input<Load>, output: &mut Output<Load>) {
-        let for_it = input.inbox.iter().filter(|got| got.frame.address != Address::Another);
-        let bits: u64 = for_it.map(|got| 8 * u64::from(got.frame.payload_bytes)).sum();
-        if bits > 0 {
-            output.count("bits", bits);
-        }
         if self.to.is_none() {
             return;
         }

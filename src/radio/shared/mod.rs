@@ -252,9 +252,7 @@ impl Shared {
         ask: impl FnOnce(&mut dyn Scheme, &mut Station<'_>) -> T,
     ) -> T {
         let radio = &self.radios[robot.index()];
-        let answering = self.scheme.answering().is_some();
         let head = radio.queue.front().map(|queued| Head {
-            answered: answering && queued.to.is_some(),
             attempt: queued.attempt,
             airtime: queued.airtime,
         });

@@ -108,7 +108,7 @@ fn detection(trial: u32) -> DetectionRecord {
         subject_down: number == 0,
         cause,
         missed: Missed {
-            lost: [0, 0, 0, number % 2],
+            lost: [0, 0, 0, number % 2, 0, 0, 0, 0, 0, 0, 0, 0],
             out_of_range: number,
             ..Missed::default()
         },
@@ -142,7 +142,7 @@ fn detection(trial: u32) -> DetectionRecord {
 }
 
 fn fates(topic: u64, trial: u32) -> TopicFates {
-    let lost = [15 + topic + u64::from(trial), 2, 3, 0];
+    let lost = [15 + topic + u64::from(trial), 2, 3, 0, 0, 0, 0, 0, 0, 0, 0, 0];
     TopicFates {
         offered: 103 + topic + u64::from(trial),
         delivered: 80,
@@ -164,7 +164,7 @@ fn traffic(robot: u32, topic: u8, trial: u32) -> TrafficRow {
         sent: volume(600),
         received: volume(u64::from(4000 + 10 * robot + trial)),
         duplicate: volume(u64::from(topic) * u64::from(7 + robot + trial)),
-        lost: [robot, 0, robot % 2, 0].map(|frames| volume(frames.into())),
+        lost: [robot, 0, robot % 2, 0, 0, 0, 0, 0, 0, 0, 0, 0].map(|frames| volume(frames.into())),
     }
 }
 

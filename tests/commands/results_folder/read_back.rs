@@ -301,7 +301,9 @@ fn results_that_do_not_belong_together_are_refused_with_the_difference() {
         refusal(
             |scenario| {
                 scenario.seed = 2;
-                scenario.radio.frame_header_bytes = 9;
+                let mut radio = scenario.radio.disk().into_owned();
+                radio.frame_header_bytes = 9;
+                scenario.radio = radio.into();
                 scenario.name = "other".to_owned();
             },
             None,

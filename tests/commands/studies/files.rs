@@ -91,7 +91,7 @@ fn a_full_design_has_every_combination_with_one_seed_and_whole_variants_as_level
         (1, 35, 0.5)
     );
     assert_eq!(
-        last.radio.loss,
+        last.radio.disk().loss,
         desim::radio::LossConfig::Bernoulli(desim::quantity::Probability::new(0.2))
     );
 }

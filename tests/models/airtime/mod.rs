@@ -145,7 +145,7 @@ impl<const OVERHEARS: bool> Protocol for Chatter<OVERHEARS> {
                 output.velocity = Some(Vec2::new(speed, 0.1 - speed.abs()));
             }
             Wake::Timer(_) => output.send(other, (2, self.said)),
-            Wake::Reception => {}
+            Wake::Reception | Wake::Sent => {}
         }
     }
 }

@@ -84,6 +84,8 @@ impl Bench {
             displacement: [(x - self.x) as f32, -self.y as f32],
         });
         let mut input = Input {
+            powers: Vec::new(),
+            outcomes: Vec::new(),
             me: ActorId(0),
             wake: Wake::ControlStep,
             inbox: inbox.collect(),
@@ -374,6 +376,8 @@ fn wakes_other_than_control_steps_only_listen() {
     let mut output = Output::default();
     for wake in [Wake::Reception, Wake::Timer(TimerId(0))] {
         let mut input = Input {
+            powers: Vec::new(),
+            outcomes: Vec::new(),
             me: ActorId(0),
             wake,
             inbox: Vec::new(),

@@ -122,7 +122,10 @@ fn obstacle() -> impl Strategy<Value = Obstacle> {
         3 => (point(), point()).prop_map(|(from, to)| wall(from, to)),
         1 => (point(), 0.0..2.0_f64).prop_map(|(centre, radius)| disc(centre, radius)),
     ];
-    (shape, loss).prop_map(|(obstacle, attenuation)| Obstacle { loss_db, ..obstacle })
+    (shape, loss).prop_map(|(obstacle, attenuation)| Obstacle {
+        attenuation,
+        ..obstacle
+    })
 }
 
 /// Every obstacle by itself: of those met only in their ends, the one that takes off most at each place.

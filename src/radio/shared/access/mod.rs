@@ -122,8 +122,6 @@ pub(super) struct Station<'a> {
 /// What a scheme knows of a frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Head {
-    /// Whether an acknowledgement is expected.
-    pub answered: bool,
     /// How often it was sent before.
     pub attempt: u32,
     /// How long it is on air.

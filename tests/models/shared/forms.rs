@@ -1,0 +1,121 @@
+//! Closed forms of medium access, in whole runs.
+
+use desim::metrics::TrialRecord;
+
+use super::{EQUAL_LOSS, EVERYBODY, HIDDEN, delivery, measured, runs, scenario, with_robots};
+
+const IEEE802154: &str = "technology: Ieee802154()";
+/// 1.184 ms for 20 bytes.
+const AIRTIME_S: f64 = 1.184e-3;
+
+fn everybody(seconds: f64, traffic: &str, radio: &str, robots: u32, trials: u32) -> Vec<TrialRecord> {
+    let radio = format!("{radio}, {EQUAL_LOSS}");
+    runs(
+        &with_robots(scenario(seconds, traffic, EVERYBODY, &radio), robots),
+        trials,
+    )
+}
+
+fn mean_latency(record: &TrialRecord) -> f64 {
+    record.latency.mean_secs().expect("frames arrive")
+}
+
+/// n queues that each load the channel by ρ: nobody else is on air when a frame begins with 1 − ρ each, and nobody begins while it lasts with e^−ρ.
+#[test]
+fn pure_aloha() {
+    for (robots, rate) in [(2, 50.0), (10, 10.0), (50, 4.0), (50, 8.0)] {
+        let load = rate * AIRTIME_S;
+        let expected = ((1.0 - load) * (-load).exp()).powi(robots - 1);
+        let traffic = format!("when: Poisson({rate:?}), payload: 20");
+        let radio = format!("{IEEE802154}, access: Aloha(), capture: inf");
+        let records = everybody(30.0, &traffic, &radio, robots as u32, 12);
+        measured(&records, delivery).agrees(&format!("{robots} robots at {rate} /s"), expected, 0.0, 0.0);
+    }
+}
+
+/// In a slot each of N robots sends with probability p, so a frame is alone with (1 − p)^(N − 1).
+#[test]
+fn slotted_aloha() {
+    for (robots, probability) in [(10, 0.1), (5, 0.3), (30, 0.05)] {
+        let radio =
+            format!("{IEEE802154}, access: SlottedAloha(slot: 0.0012, probability: {probability}), capture: inf");
+        let records = everybody(10.0, "when: Saturated, payload: 20", &radio, robots, 10);
+        let expected = (1.0_f64 - probability).powi(robots as i32 - 1);
+        measured(&records, delivery).agrees(&format!("{robots} robots, p = {probability}"), expected, 0.0, 0.0);
+    }
+}
+
+/// A frame meets a Poisson number of others of its own mean power; with a gain of its own, exponential, each of these leaves it z above them with
+/// 1/(1 + z): e^(−Gz/(1 + z)) for many robots, and (1 − pz/(1 + z))^(N − 1) for N that send with p.
+#[test]
+fn rayleigh_capture() {
+    for (capture, robots) in [(6.0, 50), (3.0, 20)] {
+        // A fast background Doppler gives each frame a gain of its own; the loss leaves noise nothing to do.
+        let radio = format!(
+            "{IEEE802154}, access: SlottedAloha(slot: 0.0012, probability: {:?}), capture: {capture:?}, negligible: 60.0, fading: Rayleigh(doppler: 5000.0)",
+            1.0 / f64::from(robots)
+        );
+        let records = everybody(8.0, "when: Saturated, payload: 20", &radio, robots, 8);
+        let z = 10_f64.powf(capture / 10.0);
+        let busy = 1.0 / f64::from(robots);
+        // Of the others a receiver is one itself: it hears nothing while it sends.
+        let expected = (1.0 - busy * z / (1.0 + z)).powi(robots as i32 - 2) * (1.0 - busy);
+        measured(&records, delivery).agrees(&format!("z = {capture} dB"), expected, 0.0, 0.0);
+    }
+}
+
+/// M/D/1: one robot's queue, served in T, waits ρT/2(1 − ρ).
+#[test]
+fn a_queue_waits_as_m_d_1() {
+    for share in [0.3, 0.6, 0.8] {
+        let rate = share / AIRTIME_S;
+        let traffic = format!("when: Poisson({rate:?}), payload: 20, senders: Given([0])");
+        let radio = format!("{IEEE802154}, access: Aloha(), queue: 1000");
+        let records = everybody(40.0, &traffic, &radio, 2, 12);
+        let expected = AIRTIME_S * (1.0 + share / (2.0 * (1.0 - share)));
+        measured(&records, mean_latency).agrees(&format!("ρ = {share}"), expected, 0.0, 0.0);
+    }
+}
+
+/// Time division: a frame waits half a frame of slots, and for those before it: F/2 + λF²/2(1 − λF).
+#[test]
+fn a_slot_waits_as_tdma() {
+    for share in [0.2, 0.5, 0.8] {
+        let (slots, slot) = (20.0, 0.002);
+        let frame = slots * slot;
+        let rate = share / frame;
+        let traffic = format!("when: Poisson({rate:?}), payload: 20");
+        let radio = format!("{IEEE802154}, access: Tdma(slot: {slot:?}, guard: 0.0), queue: 1000");
+        let records = everybody(100.0, &traffic, &radio, 20, 8);
+        let expected = frame / 2.0 + rate * frame * frame / (2.0 * (1.0 - share)) + AIRTIME_S;
+        measured(&records, mean_latency).agrees(&format!("λF = {share}"), expected, 0.0, 0.0);
+        measured(&records, delivery).agrees("nothing is lost", 1.0, 0.0, 0.0);
+    }
+}
+
+/// λT ≪ 1: a hidden sender is not on air as a frame begins, and does not begin while it lasts.
+#[test]
+fn a_hidden_pair_without_carrier_sense() {
+    for rate in [10.0, 50.0, 200.0] {
+        let traffic = format!("when: Poisson({rate:?}), payload: 20, senders: Given([0, 2])");
+        let radio = format!("{IEEE802154}, access: Aloha(), capture: inf, walls: Block, queue: 1000, {EQUAL_LOSS}");
+        let records = runs(&scenario(60.0, &traffic, HIDDEN, &radio), 10);
+        let load = rate * AIRTIME_S;
+        let expected = (1.0 - load) * (-load).exp();
+        measured(&records, delivery).agrees(&format!("{rate} /s"), expected, 0.0, 0.0);
+    }
+}
+
+/// Per channel a frame is clean with about (1 − 2T/(I + 5 ms))^(n − 1), of n robots that all advertise (T = 376 µs, I = 100 ms). A receiver is on one of three channels.
+#[test]
+fn ble_advertising() {
+    for robots in [10, 50] {
+        let radio = "technology: BleAdvertising(interval: 0.1), capture: inf";
+        let records = everybody(20.0, "when: Saturated, payload: 31", radio, robots, 8);
+        let clean = (1.0_f64 - 2.0 * 376e-6 / 0.105).powi(robots as i32 - 2);
+        // A receiver's own event is on air on all three channels in turn.
+        let awake = 1.0 - 4.0 * 376e-6 / 0.105;
+        // It goes on to another channel in the middle of an event in 2 of 3 of 376 µs in each dwell, and may miss all of it.
+        measured(&records, delivery).agrees(&format!("{robots} robots"), clean * awake, 0.0, 0.01);
+    }
+}

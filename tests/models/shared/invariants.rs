@@ -1,0 +1,134 @@
+//! What holds whatever the technology, the swarm, the walls, the jammers: every copy has one fate, drivers agree, common random numbers.
+
+use std::collections::BTreeSet;
+
+use desim::engine::SimTime;
+use desim::experiment::run_trial;
+use desim::scenario::parse;
+use desim::simulation::DriverKind;
+use proptest::prelude::*;
+use tokio_util::sync::CancellationToken;
+
+use super::{EVERYBODY, fates, scenario, with_robots};
+
+fn technology() -> impl Strategy<Value = &'static str> {
+    prop::sample::select(vec![
+        "Ieee802154()",
+        "Wifi(standard: B, rate: 1e6)",
+        "Wifi(standard: B, rate: 11e6, preamble: Short)",
+        "Wifi(standard: G, rate: 24e6)",
+        "BleAdvertising(interval: 0.05)",
+        "LoRa(spreading: 7, duty_cycle: Some(0.2))",
+        "LoRa(spreading: 9, bandwidth: 250e3, duty_cycle: None)",
+        "ArgosRab()",
+        "EPuck()",
+        "Kilobot()",
+        "Custom()",
+        "Custom(bit_rate: None)",
+        "Custom(bit_rate: 1e6, acknowledgement_bytes: 5, assess: -80.0)",
+    ])
+}
+
+fn access() -> impl Strategy<Value = &'static str> {
+    prop::sample::select(vec![
+        "",
+        "",
+        "access: None,",
+        "access: Aloha(duty_cycle: 0.3),",
+        "access: SlottedAloha(slot: 0.2, probability: 0.5),",
+        "access: Tdma(slot: 0.2, guard: 0.001),",
+        "access: CsmaCa(max_backoffs: 1, max_retries: 1),",
+        "access: Dcf(),",
+        "access: Paced(interval: 0.1, jitter: 0.05, listen: 0.001, retry: 0.001, most: 5),",
+    ])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+    #[test]
+    fn every_copy_has_one_fate_and_drivers_agree(
+        technology in technology(), access in access(), seed in any::<u64>(), robots in 1_u32..14, power in -30.0..20.0_f64,
+        capture in prop::sample::select(vec!["", "capture: None,", "capture: 0.0,", "capture: 6.0,", "capture: inf,"]),
+        fading in prop::sample::select(vec!["None", "Rayleigh()", "Rician(k: 4.0, doppler: 20.0)", "Nakagami(m: 1.5)"]),
+        walls in prop::sample::select(vec!["Pass", "Block", "Loss(6.0)"]),
+        to in prop::sample::select(vec!["Everyone", "Next", "Robot(0)"]),
+        faults in prop::sample::select(vec![
+            "", "Silence(robots: [0], at: 1.0, lasts: For(0.7))", "Mute(robots: [0], at: 0.4, lasts: For(1.0)), Deaf(robots: [0], at: 1.2)",
+            "Crash(robots: [0], at: 0.9, lasts: For(0.333))", "Partition(line: ((0.1, -5.0), (0.0, 5.0)), during: Between(0.5, 1.5))",
+        ]),
+        noise in prop::sample::select(vec![
+            "", "Jammer(at: (1.0, 1.0), power: 5.0, from: 0.3, until: 1.7, pulses: (0.003, 0.01))", "Jammer(at: (0.0, 0.0), power: -20.0), Background(power: -90.0)",
+        ]),
+        queue in 1_u32..5, payload in 0_u16..40,
+    ) {
+        let text = format!(
+            "Scenario(name: \"any\", seed: {seed}, time_limit: 3.0, control: (period: 0.2), faults: [{faults}], \
+             arena: (size: (6.0, 6.0), obstacles: [Wall(from: (0.3, -2.0), to: (0.3, 2.0)), Disc(at: (-1.5, 1.0), radius: 0.3)]), \
+             swarm: (robots: {robots}, deploy: Uniform), protocol: Traffic(when: Poisson(15.0), payload: {payload}, to: {to}), \
+             radio: Shared(technology: {technology}, {access} {capture} transmit_power: {power:?}, transmit_power_spread: 3.0, \
+             shadowing: (sigma: 4.0, decorrelation: 2.0), fading: {fading}, walls: {walls}, noise: [{noise}], queue: {queue}))"
+        );
+        let scenario = match parse("any.ron", &text, &[]) {
+            Ok(scenario) => scenario,
+            Err(report) => {
+                // Payloads that never fit are refused.
+                let report = report.to_string();
+                prop_assert!(report.contains("payload") || report.contains("slot"), "{}", report);
+                return Ok(());
+            }
+        };
+        let run = |driver| run_trial(&scenario, 0, driver, &CancellationToken::new()).expect("the trial runs");
+        let [inline, actors] = [run(DriverKind::Inline), run(DriverKind::Actors)];
+        prop_assert_eq!(&inline.ledger, &actors.ledger);
+        prop_assert_eq!(inline.digest, actors.digest);
+        let _ = fates(&inline);
+    }
+}
+
+/// Who got which of whose frames, in open-loop broadcast.
+fn received(capture: &str) -> BTreeSet<(u32, u32, u32)> {
+    use desim::simulation::{Copy, Observer};
+
+    #[derive(Default)]
+    struct Received(BTreeSet<(u32, u32, u32)>);
+    impl Observer for Received {
+        fn delivered(&mut self, copy: &Copy, _: SimTime, _: Option<SimTime>) {
+            self.0.insert((copy.sender.0, copy.receiver.0, copy.sequence));
+        }
+    }
+    let radio = format!("technology: Ieee802154(), access: Aloha(), capture: {capture}, fading: Rayleigh()");
+    let scenario = with_robots(scenario(5.0, "when: Poisson(40.0), payload: 20", EVERYBODY, &radio), 30);
+    let mut setup = desim::simulation::Setup::lasting(desim::engine::Span::from_secs(5.0));
+    setup.own_radio = Some(std::sync::Arc::new(scenario.radio.shared().expect("shared").clone()));
+    setup.control = scenario.control.clone();
+    let robots = (0..30).map(|_| {
+        let timing = desim::kinds::traffic::Timing::Poisson(desim::quantity::Positive::new(40.0));
+        desim::kinds::traffic::Source::new(timing, 20, Some(desim::kinds::traffic::To::Everyone))
+    });
+    let poses = (0..30).map(|robot| desim::geometry::Pose {
+        position: desim::geometry::Vec2::new(f64::from(robot % 6), f64::from(robot / 6)),
+        heading: 0.0,
+    });
+    let stop = CancellationToken::new();
+    let finished = setup.observe(
+        poses.collect(),
+        robots.collect(),
+        DriverKind::Inline,
+        &stop,
+        Received::default(),
+    );
+    finished.expect("the run ends").observer.0
+}
+
+#[test]
+fn what_survives_at_a_capture_ratio_survives_at_every_lower_one() {
+    let [none, three, six, strict] = ["0.0", "3.0", "6.0", "inf"].map(received);
+    assert!(strict.is_subset(&six) && six.is_subset(&three) && three.is_subset(&none));
+    assert!(
+        strict.len() < six.len() && six.len() < three.len(),
+        "{} {} {}",
+        strict.len(),
+        six.len(),
+        three.len()
+    );
+}
