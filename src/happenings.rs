@@ -68,6 +68,9 @@ pub trait Observer {
         false
     }
 
+    /// The run begins, with everyone where `world` has them.
+    fn begin(&mut self, world: &World) {}
+
     /// `robot` woke at `now`, was told the `input` and answered with the `output`, which is yet to take effect.
     fn woke<H, M>(&mut self, now: SimTime, robot: ActorId, input: &Input<H>, output: &Output<M>) {}
 

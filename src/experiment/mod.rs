@@ -11,4 +11,4 @@ mod trial;
 pub use crate::kind::TrialError;
 pub use parts::{FinishedTrial, Parts, PartsError};
 pub use run::{Ending, Experiment, ExperimentError, Pool};
-pub use trial::{run_trial, run_trial_in, trace_trial};
+pub use trial::{reach, run_trial, run_trial_in, trace_trial};

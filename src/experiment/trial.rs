@@ -6,6 +6,7 @@ use crate::engine::{ActorId, Span};
 use crate::kind::{Start, Swarm, TrialError};
 use crate::metrics::TrialRecord;
 use crate::motion::deploy;
+use crate::radio::Reach;
 use crate::scenario::Scenario;
 use crate::simulation::{DriverKind, Setup};
 use crate::spool::Scratch;
@@ -57,6 +58,12 @@ pub fn trace_trial(
         ..setup(scenario, trial)
     };
     run(setup, scenario, DriverKind::Inline, stop)
+}
+
+/// Who was in range of whom in a trial, from where robots were: what its record's links are.
+#[must_use]
+pub fn reach(scenario: &Scenario, trial: u32) -> Reach {
+    setup(scenario, trial).reach(scenario.swarm.robots as usize)
 }
 
 fn run(

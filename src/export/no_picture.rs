@@ -3,11 +3,12 @@
 use super::scene::Scene;
 use crate::metrics::TrialRecord;
 use crate::metrics::comparison::Comparison;
+use crate::radio::Reach;
 
 impl Scene {
     /// No pictures.
     #[must_use]
-    pub fn draw(&self, _: &TrialRecord) -> Vec<(&'static str, String)> {
+    pub fn draw(&self, _: &TrialRecord, _: &Reach) -> Vec<(&'static str, String)> {
         Vec::new()
     }
 }

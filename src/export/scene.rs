@@ -10,8 +10,6 @@ pub struct Scene {
     pub name: String,
     /// The arena and its obstacles.
     pub arena: ArenaConfig,
-    /// Communication range, metres.
-    pub range: f64,
     /// Places of the mission's targets, metres from the centre.
     pub targets: Vec<Vec2>,
     /// Names of the roles, in the order of their numbers.

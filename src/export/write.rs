@@ -7,9 +7,10 @@ use super::names::Names;
 use super::place::{FolderError, WriteError, failed, json};
 use super::scene::Scene;
 use super::tables::Tables;
-use crate::experiment::{FinishedTrial, Parts};
+use crate::experiment::{FinishedTrial, Parts, reach};
 use crate::metrics::summary::Trials;
 use crate::metrics::{Summary, TrialRecord};
+use crate::radio::Reach;
 use crate::scenario::Scenario;
 
 /// Of which trials to draw pictures.
@@ -52,7 +53,7 @@ pub fn write(
         let part = parts.load(trial)?;
         tables.append(&part.record).map_err(failed("write", parts.dir()))?;
         if pictures == Pictures::All || (pictures == Pictures::First && trial == 0) {
-            files.extend(draw(folder, &scene, &part.record)?);
+            files.extend(draw(folder, &scene, &part.record, &reach(scenario, trial))?);
         }
         manifest.trials.push(entry(&part));
         trials.add(part.record);
@@ -75,8 +76,8 @@ pub fn write(
 }
 
 /// Draws a trial and answers the names of the files.
-fn draw(folder: &Folder, scene: &Scene, record: &TrialRecord) -> Result<Vec<String>, FolderError> {
-    let staged = scene.draw(record).into_iter().map(|(kind, picture)| {
+fn draw(folder: &Folder, scene: &Scene, record: &TrialRecord, reach: &Reach) -> Result<Vec<String>, FolderError> {
+    let staged = scene.draw(record, reach).into_iter().map(|(kind, picture)| {
         let name = format!("{kind}_{}.svg", record.trial);
         folder.stage(&name, picture.as_bytes()).map(|()| name)
     });
@@ -111,7 +112,6 @@ fn scene(scenario: &Scenario) -> Scene {
     Scene {
         name: scenario.name.clone(),
         arena: scenario.arena.clone(),
-        range: scenario.radio.range.get(),
         targets: targets.map(|(place, _)| place).collect(),
         roles: names(scenario).roles,
     }

@@ -13,6 +13,11 @@ use crate::radio::LossCause;
 macro_rules! hand_on {
     ($tell:ident) => {
         #[inline]
+        fn begin(&mut self, world: &World) {
+            $tell!(self, begin(world));
+        }
+
+        #[inline]
         fn woke<H, M>(&mut self, now: SimTime, robot: ActorId, input: &Input<H>, output: &Output<M>) {
             $tell!(self, woke(now, robot, input, output));
         }

@@ -200,8 +200,10 @@ mod tests {
     use crate::metrics::MissionTarget;
     use crate::metrics::faults::Failures;
     use crate::protocol::{Note, Role};
+    use crate::radio::Reach;
 
     const WORKER: Role = Role(1);
+    const RANGE: Reach = Reach::Disk(2.0);
 
     /// Robot 0 is the root; 1 and 2 relay side by side to the worker 3 at the target; 4 stands by.
     struct Stage {
@@ -257,17 +259,17 @@ mod tests {
                     },
                 },
             };
-            let scene = Scene::new(&self.reports, &self.failures, &self.positions, 2.0);
+            let scene = Scene::new(&self.reports, &self.failures, &self.positions, &RANGE);
             let blow = Healing::brace(&change, &self.mission, scene);
             self.failures.change(now, &change, &self.reports);
-            let scene = Scene::new(&self.reports, &self.failures, &self.positions, 2.0);
+            let scene = Scene::new(&self.reports, &self.failures, &self.positions, &RANGE);
             if let Some(blow) = blow {
                 self.healing.strike(now, 7, &blow, &self.mission, scene);
             }
         }
 
         fn observe(&mut self, second: u32) {
-            let scene = Scene::new(&self.reports, &self.failures, &self.positions, 2.0);
+            let scene = Scene::new(&self.reports, &self.failures, &self.positions, &RANGE);
             self.healing
                 .observe(SimTime::from_secs(second.into()), &self.mission, scene);
         }

@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use crate::engine::ActorId;
 use crate::geometry::{Vec2, at_most};
 use crate::protocol::Role;
+use crate::radio::Reach;
 
 use super::connectivity::Chains;
 use super::faults::Failures;
@@ -41,17 +42,17 @@ pub(super) struct Scene<'a> {
     pub(super) reports: &'a Reports,
     pub(super) failures: &'a Failures,
     pub(super) positions: &'a [Vec2],
-    radio_range: f64,
+    reach: &'a Reach,
 }
 
 impl<'a> Scene<'a> {
-    /// What robots have reported, which have failed, where they are, and how far their radios carry, in metres.
-    pub(super) fn new(reports: &'a Reports, failures: &'a Failures, positions: &'a [Vec2], radio_range: f64) -> Self {
+    /// What robots have reported, which have failed, where they are, and who is in range of whom.
+    pub(super) fn new(reports: &'a Reports, failures: &'a Failures, positions: &'a [Vec2], reach: &'a Reach) -> Self {
         Self {
             reports,
             failures,
             positions,
-            radio_range,
+            reach,
         }
     }
 
@@ -65,7 +66,8 @@ impl<'a> Scene<'a> {
 
     fn chains(&self, root: ActorId) -> Chains {
         Chains::new(&self.reports.parents, root, |child, parent| {
-            self.are_live(child, parent) && self.apart(child, parent) <= at_most(self.radio_range)
+            let [child, parent] = [child, parent].map(|robot| (robot, self.positions[robot.index()]));
+            self.are_live(child.0, parent.0) && self.reach.linked(child, parent)
         })
     }
 }
@@ -167,6 +169,7 @@ pub(super) mod tests {
     use crate::engine::SimTime;
     use crate::faults::{Change, Effect, Health, Subject};
     use crate::protocol::Note;
+    use crate::radio::Walled;
 
     const WORKER: Role = Role(1);
 
@@ -175,6 +178,7 @@ pub(super) mod tests {
         pub reports: Reports,
         pub failures: Failures,
         pub positions: Vec<Vec2>,
+        pub reach: Reach,
     }
 
     impl Stage {
@@ -198,6 +202,7 @@ pub(super) mod tests {
                 reports,
                 failures,
                 positions,
+                reach: Reach::Disk(2.0),
             }
         }
 
@@ -220,7 +225,7 @@ pub(super) mod tests {
         }
 
         pub fn scene(&self) -> Scene<'_> {
-            Scene::new(&self.reports, &self.failures, &self.positions, 2.0)
+            Scene::new(&self.reports, &self.failures, &self.positions, &self.reach)
         }
 
         fn accomplishes(&self, mission: &Mission) -> bool {
@@ -303,6 +308,21 @@ pub(super) mod tests {
         assert_fails_when("the worker has another role", |stage| {
             stage.reports.note(ActorId(3), &Note::Role(Role(0)));
         });
+    }
+
+    #[test]
+    fn a_chain_counts_where_its_robots_hear_each_other_and_not_through_a_wall_or_one_way() {
+        // Odd robots, of which the worker is one, are heard half as far as others.
+        let links = |range, shift| {
+            let mut stage = Stage::new();
+            stage.reach = Walled::reach(range);
+            stage.positions.iter_mut().for_each(|place| place.x += shift);
+            mission(2).links(stage.scene())
+        };
+        assert_eq!(links(4.0, 0.0), [2]);
+        assert_eq!(links(4.0, -1.0), [0], "a wall parts the root from its relays");
+        assert_eq!(links(4.0, -2.0), [0], "a wall parts the worker from its relays");
+        assert_eq!(links(3.0, 0.0), [0], "nobody hears the worker");
     }
 
     #[test]

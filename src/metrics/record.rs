@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, Vec2};
+use crate::radio::{Placed, Reach};
 use crate::spool::{Entry, Spool, Spooled, entry};
 
 use super::detection::{DetectionRecord, ObservedFailure, StatusTrace, Suspicion};
@@ -128,6 +129,19 @@ impl TrialRecord {
         robots.sort_unstable();
         robots.dedup();
         robots
+    }
+
+    /// The places at the end of every two robots that hear each other as `reach` says.
+    #[must_use]
+    pub fn links_at_end(&self, reach: &Reach) -> Vec<(Vec2, Vec2)> {
+        let places = self.robots.iter().map(|robot| robot.pose.position);
+        let robots: Vec<Placed> = (0..).map(ActorId).zip(places).collect();
+        let mut links = Vec::new();
+        for (index, &robot) in robots.iter().enumerate() {
+            let linked = robots[index + 1..].iter().filter(|other| reach.linked(robot, **other));
+            links.extend(linked.map(|other| (robot.1, other.1)));
+        }
+        links
     }
 
     /// Robots that ended in another role than the one that all start in: those that the mission took. `None` where

@@ -87,11 +87,11 @@ impl Arena {
 impl Body {
     fn new(config: &ObstacleConfig) -> Self {
         match config {
-            ObstacleConfig::Disc { at, radius } => Self::Disc {
+            ObstacleConfig::Disc { at, radius, .. } => Self::Disc {
                 centre: Vec2::new(at.0.get(), at.1.get()),
                 radius: radius.get(),
             },
-            ObstacleConfig::Wall { from, to } => {
+            ObstacleConfig::Wall { from, to, .. } => {
                 let from = Vec2::new(from.0.get(), from.1.get());
                 let along = Vec2::new(to.0.get(), to.1.get()) - from;
                 Self::Wall { from, along }
@@ -152,10 +152,12 @@ mod tests {
                 ObstacleConfig::Disc {
                     at: at(2.0, 0.0),
                     radius: Positive::new(0.5),
+                    attenuation: None,
                 },
                 ObstacleConfig::Wall {
                     from: at(-2.0, -1.0),
                     to: at(-2.0, 1.0),
+                    attenuation: None,
                 },
             ],
         })

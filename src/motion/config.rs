@@ -34,6 +34,10 @@ pub enum ObstacleConfig {
         at: (Finite, Finite),
         /// Its radius in metres.
         radius: Positive,
+        /// What a radio signal loses on its way through it, dB, where the radio minds obstacles; left out, what that radio takes for a
+        /// wall. The disk radio minds none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        attenuation: Option<NonNegative>,
     },
     /// A thin straight wall.
     Wall {
@@ -41,7 +45,21 @@ pub enum ObstacleConfig {
         from: (Finite, Finite),
         /// The other end, within the arena and elsewhere than the first.
         to: (Finite, Finite),
+        /// What a radio signal loses on its way through it, dB, where the radio minds obstacles; left out, what that radio takes for a
+        /// wall. The disk radio minds none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        attenuation: Option<NonNegative>,
     },
+}
+
+impl ObstacleConfig {
+    /// What a radio signal loses on its way through it, dB, if that is said.
+    #[must_use]
+    pub fn attenuation(&self) -> Option<NonNegative> {
+        match self {
+            Self::Disc { attenuation, .. } | Self::Wall { attenuation, .. } => *attenuation,
+        }
+    }
 }
 
 /// Where robots stand at the start. They never overlap each other, walls or obstacles.

@@ -57,8 +57,7 @@ impl Grid {
     }
 
     /// Calls `visit` once for each point within `range` of `centre`, [the rim included](at_most), `elapsed` seconds after the
-    /// grid was built: with its number and where it is then, relative to `centre`. The order depends on nothing but
-    /// what the grid was built from.
+    /// grid was built: with its number and where it is then. The order depends on nothing but what the grid was built from.
     ///
     /// Whether a point is near is as good as random, and a wrong guess of the processor costs more than the test: so points
     /// that may be near are first noted without a branch, over all rows, then visited.
@@ -92,9 +91,8 @@ impl Grid {
             if self.fastest > 0.0 {
                 position += self.velocities[index] * elapsed;
             }
-            let offset = position - centre;
-            if offset.norm_squared() <= range * range {
-                visit(self.ids[index], offset);
+            if (position - centre).norm_squared() <= range * range {
+                visit(self.ids[index], position);
             }
         }
     }
@@ -182,7 +180,7 @@ mod tests {
 
     fn found(grid: &Grid, centre: Vec2, elapsed: f64, range: f64) -> Vec<(u32, Vec2)> {
         let mut found = Vec::new();
-        grid.for_each_within(centre, elapsed, range, |id, offset| found.push((id, offset)));
+        grid.for_each_within(centre, elapsed, range, |id, place| found.push((id, place)));
         found
     }
 
@@ -235,8 +233,8 @@ mod tests {
             let mut found = found(&grid, centre, elapsed, range);
             found.sort_by_key(|&(id, _)| id);
             let brute: Vec<_> = (0..positions.len())
-                .map(|id| (id as u32, positions[id] + velocities[id] * elapsed - centre))
-                .filter(|(_, offset)| offset.norm_squared() <= at_most(range).powi(2))
+                .map(|id| (id as u32, positions[id] + velocities[id] * elapsed))
+                .filter(|(_, place)| (place - centre).norm_squared() <= at_most(range).powi(2))
                 .collect();
             prop_assert_eq!(found, brute);
         }

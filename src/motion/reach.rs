@@ -135,6 +135,7 @@ mod tests {
         ObstacleConfig::Wall {
             from: at(from.0, from.1),
             to: at(to.0, to.1),
+            attenuation: None,
         }
     }
 
@@ -159,6 +160,7 @@ mod tests {
         let disc = |radius| ObstacleConfig::Disc {
             at: at(2.0, 1.0),
             radius: Positive::new(radius),
+            attenuation: None,
         };
         assert_eq!(reached(vec![disc(0.22)], &[(2.0, 1.0)]), [Reach::Open]);
         assert_eq!(reached(vec![disc(0.24)], &[(2.0, 1.0)]), [Reach::NoRoom]);

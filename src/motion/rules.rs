@@ -86,10 +86,10 @@ impl ArenaConfig {
         for (index, obstacle) in self.obstacles.iter().enumerate() {
             let points = match obstacle {
                 ObstacleConfig::Disc { at, .. } => vec![*at],
-                ObstacleConfig::Wall { from, to } => vec![*from, *to],
+                ObstacleConfig::Wall { from, to, .. } => vec![*from, *to],
             };
             let path = format!("obstacles[{index}]");
-            if matches!(obstacle, ObstacleConfig::Wall { from, to } if from == to) {
+            if matches!(obstacle, ObstacleConfig::Wall { from, to, .. } if from == to) {
                 problems.push((path.clone(), "a wall needs two different ends".to_owned()));
             }
             problems.extend(
@@ -251,14 +251,17 @@ mod tests {
                 ObstacleConfig::Disc {
                     at: at(4.0, 4.0),
                     radius: Positive::new(0.5),
+                    attenuation: None,
                 },
                 ObstacleConfig::Disc {
                     at: at(6.0, 0.0),
                     radius: Positive::new(0.5),
+                    attenuation: None,
                 },
                 ObstacleConfig::Wall {
                     from: at(1.0, 1.0),
                     to: at(1.0, 1.0),
+                    attenuation: None,
                 },
             ],
             ..ArenaConfig::default()
@@ -295,6 +298,7 @@ mod tests {
             obstacles: vec![ObstacleConfig::Disc {
                 at: at(0.0, 0.0),
                 radius: Positive::new(0.5),
+                attenuation: None,
             }],
             ..ArenaConfig::default()
         };

@@ -85,7 +85,7 @@ impl Site<'_> {
         };
         let barred = |obstacle: &ObstacleConfig| match obstacle {
             ObstacleConfig::Disc { radius, .. } => PI * (radius.get() + self.body_radius).powi(2),
-            ObstacleConfig::Wall { from, to } => {
+            ObstacleConfig::Wall { from, to, .. } => {
                 let length = (to.0.get() - from.0.get()).hypot(to.1.get() - from.1.get());
                 2.0 * self.body_radius * length + PI * self.body_radius.powi(2)
             }

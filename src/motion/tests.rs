@@ -30,14 +30,17 @@ fn cluttered() -> ArenaConfig {
             ObstacleConfig::Disc {
                 at: at(0.6, 0.2),
                 radius: Positive::new(0.3),
+                attenuation: None,
             },
             ObstacleConfig::Wall {
                 from: at(-1.0, -0.8),
                 to: at(-0.4, 0.9),
+                attenuation: None,
             },
             ObstacleConfig::Wall {
                 from: at(-0.4, 0.9),
                 to: at(0.3, 0.8),
+                attenuation: None,
             },
         ],
         ..square(3.0)
@@ -142,10 +145,12 @@ fn proximity_reports_gaps_between_edges_of_robots_walls_and_obstacles() {
             ObstacleConfig::Disc {
                 at: at(0.0, 1.0),
                 radius: Positive::new(0.75),
+                attenuation: None,
             },
             ObstacleConfig::Wall {
                 from: at(-1.0, -0.25),
                 to: at(1.0, -0.25),
+                attenuation: None,
             },
         ],
         ..square(10.0)
@@ -339,7 +344,7 @@ proptest! {
         // A wall from side to side: who starts on the left, stays there.
         let at = |x, y| (Finite::new(x), Finite::new(y));
         let arena = ArenaConfig {
-            obstacles: vec![ObstacleConfig::Wall { from: at(0.0, -1.0), to: at(0.0, 1.0) }],
+            obstacles: vec![ObstacleConfig::Wall { from: at(0.0, -1.0), to: at(0.0, 1.0), attenuation: None, }],
             ..square(2.0)
         };
         let config = MotionConfig { max_speed: Positive::new(speed), ..MotionConfig::default() };

@@ -191,11 +191,21 @@ impl World {
     #[inline]
     pub fn for_each_within(&self, id: ActorId, at: SimTime, range: f64, mut visit: impl FnMut(ActorId, Vec2)) {
         let centre = self.position(id, at);
+        self.for_each_around(centre, at, range, |other, place| {
+            if other != id {
+                visit(other, place - centre);
+            }
+        });
+    }
+
+    /// Calls `visit` once for each robot whose centre is within `range` metres of the place `centre` at instant `at` (from the last tick
+    /// to the next), the rim included: with its id and where it is, metres from the arena's centre. The order is as in
+    /// [`for_each_within`](Self::for_each_within).
+    #[inline]
+    pub fn for_each_around(&self, centre: Vec2, at: SimTime, range: f64, mut visit: impl FnMut(ActorId, Vec2)) {
         self.neighbours
-            .for_each_within(centre, self.elapsed(at), range, |other, offset| {
-                if other != id.0 {
-                    visit(ActorId(other), offset);
-                }
+            .for_each_within(centre, self.elapsed(at), range, |robot, place| {
+                visit(ActorId(robot), place);
             });
     }
 
@@ -208,7 +218,8 @@ impl World {
         let robot_reach = 2.0 * self.body_radius + self.proximity_range;
         let touch = self.body_radius / OF_RADIUS * TOUCH;
         self.bodies
-            .for_each_within(centre, self.elapsed(at), robot_reach, |other, offset| {
+            .for_each_within(centre, self.elapsed(at), robot_reach, |other, place| {
+                let offset = place - centre;
                 let distance = offset.norm();
                 if other != id.0 && distance > 0.0 {
                     out.push(offset * ((distance - 2.0 * self.body_radius).max(touch) / distance));

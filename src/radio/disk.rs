@@ -6,7 +6,9 @@ use super::draw::{CHANNEL, FrameCopy, LatencyBits};
 use super::latency::Latency;
 use super::loss::Loss;
 use super::medium::{Fate, Fates, Listener, Medium, RadioKind, Transmission};
+use super::reach::Reach;
 use super::sensing::Sensing;
+use super::site::{Places, RadioSite};
 use crate::engine::{KeyedStreams, SimTime, Span, Streams};
 
 /// The disk radio of one run. Its frames take no time on air and do not meet: the fate of each copy is settled when its frame is handed over.
@@ -24,21 +26,21 @@ pub struct Disk {
 }
 
 impl RadioKind for RadioConfig {
-    fn medium(&self, streams: &Streams, robots: usize) -> Box<dyn Medium> {
-        Box::new(Disk::new(self, streams, robots))
+    fn medium(&self, site: &RadioSite) -> Box<dyn Medium> {
+        Box::new(Disk::new(self, &site.streams, site.robots))
     }
 }
 
 impl Medium for Disk {
-    fn range(&self) -> f64 {
-        self.range
+    fn reach(&self) -> Reach {
+        Reach::Disk(self.range)
     }
 
     fn lookahead(&self) -> Span {
         self.latency.least()
     }
 
-    fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+    fn transmit(&mut self, frame: &Transmission<'_>, _: &dyn Places, fates: &mut Fates) {
         let copies = frame.listeners.iter().map(|&listener| {
             let copy = FrameCopy {
                 sender: frame.frame.sender,
@@ -186,7 +188,7 @@ mod tests {
             listeners: &listeners,
         };
         let mut fates = Fates::default();
-        disk.transmit(&frame, &mut fates);
+        disk.transmit(&frame, &Vec::new(), &mut fates);
         fates.drain().map(|(id, fate)| (id.0, fate)).collect()
     }
 

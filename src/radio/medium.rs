@@ -3,7 +3,9 @@
 use std::fmt::Debug;
 
 use super::LossCause;
-use crate::engine::{ActorId, SimTime, Span, Streams};
+use super::reach::Reach;
+use super::site::{Places, RadioSite};
+use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Vec2;
 
 /// A radio that runs can be held over: its settings, of which each run makes itself a [`Medium`].
@@ -15,8 +17,8 @@ use crate::geometry::Vec2;
 /// use std::collections::VecDeque;
 /// use std::sync::Arc;
 ///
-/// use desim::engine::{SimTime, Span, Streams};
-/// use desim::radio::{Fate, Fates, FrameId, Listener, Medium, RadioKind, Transmission};
+/// use desim::engine::{SimTime, Span};
+/// use desim::radio::{Fate, Fates, FrameId, Listener, Medium, Places, RadioKind, RadioSite, Reach, Transmission};
 /// use desim::simulation::Setup;
 ///
 /// const RANGE_M: f64 = 2.0;
@@ -26,7 +28,7 @@ use crate::geometry::Vec2;
 /// struct Quiet;
 ///
 /// impl RadioKind for Quiet {
-///     fn medium(&self, _: &Streams, _robots: usize) -> Box<dyn Medium> {
+///     fn medium(&self, _: &RadioSite) -> Box<dyn Medium> {
 ///         Box::new(OnAir::default())
 ///     }
 /// }
@@ -36,15 +38,15 @@ use crate::geometry::Vec2;
 /// struct OnAir(VecDeque<(SimTime, FrameId, Vec<Listener>)>);
 ///
 /// impl Medium for OnAir {
-///     fn range(&self) -> f64 {
-///         RANGE_M
+///     fn reach(&self) -> Reach {
+///         Reach::Disk(RANGE_M)
 ///     }
 ///
 ///     fn lookahead(&self) -> Span {
 ///         Span::from_secs(8.0 * BIT_S) // a byte
 ///     }
 ///
-///     fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+///     fn transmit(&mut self, frame: &Transmission<'_>, _: &dyn Places, fates: &mut Fates) {
 ///         let ends = frame.at + Span::from_secs(f64::from(8 * frame.bytes) * BIT_S);
 ///         for listener in frame.listeners {
 ///             fates.push(listener.id, Fate::Open);
@@ -57,7 +59,7 @@ use crate::geometry::Vec2;
 ///         self.0.front().map_or(SimTime::NEVER, |first| first.0)
 ///     }
 ///
-///     fn advance(&mut self, now: SimTime, fates: &mut Fates) -> Option<FrameId> {
+///     fn advance(&mut self, now: SimTime, _: &dyn Places, fates: &mut Fates) -> Option<FrameId> {
 ///         let (_, frame, listeners) = self.0.pop_front()?;
 ///         for Listener { id, sender } in listeners {
 ///             let displacement = [sender.x as f32, sender.y as f32];
@@ -71,8 +73,8 @@ use crate::geometry::Vec2;
 /// setup.own_radio = Some(Arc::new(Quiet));
 /// ```
 pub trait RadioKind: Debug + Send + Sync {
-    /// The radio of one run, for robots 0 to `robots` − 1, drawing from the `streams` of their trial.
-    fn medium(&self, streams: &Streams, robots: usize) -> Box<dyn Medium>;
+    /// The radio of one run at `site`.
+    fn medium(&self, site: &RadioSite) -> Box<dyn Medium>;
 }
 
 /// The radio of one run: a state machine that is handed frames and decides what becomes of each copy, when it is known.
@@ -90,24 +92,24 @@ pub trait RadioKind: Debug + Send + Sync {
 /// - What a robot that cannot send says is not handed over.
 ///
 /// # Where everybody is
-/// A frame comes with its listeners and their places as they are when it is handed over, and its fate is decided by these:
-/// robots go less than a centimetre while a frame of some milliseconds lasts. What jams whom follows from places too, not from who is offered what.
+/// A frame comes with its listeners and their places as they are when it is handed over. Where these and all others are at the medium's own events
+/// it may ask of the [`Places`] that it is given: robots go less than a centimetre while a frame of some milliseconds lasts, but may have gone far
+/// while it waited for its turn. What jams whom follows from places too, not from who is offered what.
 ///
 /// # Order
 /// At one instant the medium is advanced behind faults and before robots wake, so that a robot which wakes at t reads what has arrived at t.
 pub trait Medium {
-    /// Communication range in metres: who is farther away than this hears nothing; at exactly this distance one still listens (paper section 3.1).
-    /// The same throughout a run.
-    fn range(&self) -> f64;
+    /// Who is in range of whom: a frame is offered to who is in range of its sender when it is handed over. The same throughout a run.
+    fn reach(&self) -> Reach;
 
     /// No copy arrives earlier than so long after its frame is handed over: the least latency, or the least time until a frame
     /// begins and the least that one lasts. So long is what robots do without effect on others, which spares time; zero is always right. The same
     /// throughout a run.
     fn lookahead(&self) -> Span;
 
-    /// Takes over `frame`, and says of each of its listeners what becomes of its copy, if only that it is [open](Fate::Open). A copy that arrives does so
+    /// Takes over `frame`, with everybody where `places` has them, and says of each of its listeners what becomes of its copy, if only that it is [open](Fate::Open). A copy that arrives does so
     /// no earlier than [`lookahead`](Self::lookahead) allows; copies of successive frames may arrive in another order than they were sent.
-    fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates);
+    fn transmit(&mut self, frame: &Transmission<'_>, places: &dyn Places, fates: &mut Fates);
 
     /// When it wants to be [advanced](Self::advance) next; `NEVER` if nothing is to happen.
     fn next(&self) -> SimTime {
@@ -116,14 +118,14 @@ pub trait Medium {
 
     /// Lets one thing happen that is due at `now`, its [`next`](Self::next) instant. If that decides open copies, all of one frame, their fates
     /// are put into `fates` and the frame is returned; more of its copies may stay open. None arrives before `now`.
-    fn advance(&mut self, now: SimTime, fates: &mut Fates) -> Option<FrameId> {
-        let _ = (now, fates);
+    fn advance(&mut self, now: SimTime, places: &dyn Places, fates: &mut Fates) -> Option<FrameId> {
+        let _ = (now, places, fates);
         None
     }
 
     /// From `now` on the radio of `robot` sends or does not, and hears or does not. At first all do both.
-    fn enable(&mut self, now: SimTime, robot: ActorId, sends: bool, hears: bool) {
-        let _ = (now, robot, sends, hears);
+    fn enable(&mut self, now: SimTime, places: &dyn Places, robot: ActorId, sends: bool, hears: bool) {
+        let _ = (now, places, robot, sends, hears);
     }
 }
 

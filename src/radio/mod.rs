@@ -13,8 +13,8 @@
 //! settings has the same latency under both. A model that needs no randomness opens no stream.
 //!
 //! # Room for what is not here
-//! Propagation (path loss, shadowing) replaces the disk: [`Medium::range`] is then the distance that counts as in range. What overlaps where follows from the places of senders and
-//! listeners, which frames come with, not from who is offered what: a robot jams also those that it says nothing to. Each new reason for a loss is one more
+//! Propagation (path loss, shadowing, walls) replaces the disk: [`Reach::Links`] then says who counts as in range of whom, for all of a run. What overlaps where follows from the places
+//! of senders and listeners, which frames come with, and of all others ([`Places`]), not from who is offered what: a robot jams also those that it says nothing to. Each new reason for a loss is one more
 //! [`LossCause`]. What a sender learns of a frame to one robot ([`Transmission::to`]) is one more thing that [`Medium::advance`] may say of it.
 
 mod config;
@@ -25,14 +25,20 @@ mod latency;
 mod law;
 mod loss;
 mod medium;
+mod reach;
 mod sensing;
+mod site;
 
 pub use config::{LatencyConfig, LossConfig, RadioConfig, SensingConfig};
 pub use disk::Disk;
 pub use law::{LossChain, LossRun};
 pub use medium::{Fate, Fates, FrameId, Listener, Medium, RadioKind, Transmission};
+pub use reach::{Links, Placed, Reach};
+pub use site::{Obstacle, Places, RadioSite, Shape};
 
 pub(crate) use medium::Arrival;
+#[cfg(test)]
+pub(crate) use reach::tests::Walled;
 
 use serde::{Deserialize, Serialize};
 

@@ -12,6 +12,7 @@ mod clock;
 mod digest;
 mod error;
 mod inbox;
+mod places;
 mod run;
 mod setup;
 mod wakes;

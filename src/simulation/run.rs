@@ -149,6 +149,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
     /// Runs to the end and returns what is left.
     pub async fn until_end(mut self, stop: &CancellationToken) -> Result<Ended<P, O>, RunError> {
         let mut end = self.rhythm.time_limit;
+        self.observer.begin(&self.world);
         self.plan_radio();
         loop {
             let (event, now) = self.next_event();
@@ -170,7 +171,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
                 }
                 Event::Fault => self.suffer(now),
                 Event::Radio => {
-                    self.air.advance(now, &mut self.observer);
+                    self.air.advance(now, &self.world, &mut self.observer);
                     self.plan_radio();
                     self.wake_reached();
                 }
@@ -221,7 +222,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
 
     /// From `now` on `robot` can do what its `health` allows.
     fn ail(&mut self, now: SimTime, robot: ActorId, health: Health) {
-        self.air.set_health(now, robot, health, &mut self.observer);
+        self.air.set_health(now, robot, health, &self.world, &mut self.observer);
         let alarms = &mut self.alarms[robot.index()];
         if self.rhythm.wake_on_reception {
             alarms.set_arrival(self.air.next_arrival(robot));

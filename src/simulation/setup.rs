@@ -8,6 +8,7 @@ use tokio_util::sync::CancellationToken;
 use super::air::Air;
 use super::digest::Digest;
 use super::error::RunError;
+use super::places::site;
 use super::run::{Ended, Rhythm, Run};
 use crate::engine::{ActorId, Actors, Driver, Inline, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
@@ -19,7 +20,7 @@ use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm as Repeated, WakeConfig};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::{CompletionConfig, Protocol, Robot, Start};
-use crate::radio::{Medium, RadioConfig, RadioKind};
+use crate::radio::{Medium, RadioConfig, RadioKind, Reach};
 use crate::spool::Scratch;
 
 /// How robots are run. Both give the same results, byte for byte.
@@ -106,6 +107,15 @@ impl Setup {
         Streams::new(self.seed, self.trial)
     }
 
+    /// Who is in range of whom in a run of so many robots.
+    ///
+    /// # Panics
+    /// If the radio's config has problems: a scenario is checked before it is run.
+    #[must_use]
+    pub fn reach(&self, robots: usize) -> Reach {
+        self.medium(robots).reach()
+    }
+
     /// Puts `robots` at `poses`, in order of their numbers, and runs them to the end, or until `stop` is cancelled.
     ///
     /// # Errors
@@ -152,7 +162,7 @@ impl Setup {
         };
         let robots = robots.into_iter().zip(0..).map(started).collect();
         let medium = self.medium(swarm);
-        let recorder = Recorder::new(self.layout::<P>(swarm, medium.range()), &self.metrics);
+        let recorder = Recorder::new(self.layout::<P>(swarm, medium.reach()), &self.metrics);
         let books = (recorder, Digest::new());
         let run = async {
             match (self.trace.zip(P::STATUS), driver) {
@@ -200,7 +210,7 @@ impl Setup {
         let streams = self.streams();
         let robots = poses.len();
         let first_steps = self.first_steps(robots, streams);
-        let world = World::new(&self.motion, &self.arena, poses, medium.range());
+        let world = World::new(&self.motion, &self.arena, poses, medium.reach().farthest());
         let rhythm = self.rhythm();
         let air = Air::<P>::new(medium, robots, self.headers(), self.piggyback, rhythm.wake_on_reception);
         let faults = Faults::new(&self.faults, P::ROLES, robots, rhythm.control_period, streams);
@@ -240,7 +250,8 @@ impl Setup {
     /// The radio of this run.
     fn medium(&self, robots: usize) -> Box<dyn Medium> {
         let radio = self.own_radio.as_deref().unwrap_or(&self.radio);
-        radio.medium(&self.streams(), robots)
+        let body_radius = self.motion.body_radius.get();
+        radio.medium(&site(self.streams(), robots, &self.arena, body_radius))
     }
 
     fn headers(&self) -> HeaderBytes {
@@ -250,7 +261,7 @@ impl Setup {
         }
     }
 
-    fn layout<P: Protocol>(&self, robots: usize, radio_range: f64) -> Layout {
+    fn layout<P: Protocol>(&self, robots: usize, reach: Reach) -> Layout {
         let circumstances = Circumstances {
             robots,
             status_interval: self.status_interval,
@@ -260,7 +271,7 @@ impl Setup {
             topics: P::topics(&self.detector).len(),
             roles: P::ROLES.len(),
             headers: self.headers(),
-            radio_range,
+            reach,
             control_period: self.control.period(),
             mission: self.mission.clone(),
             rumors: self.rumors,

@@ -17,6 +17,7 @@ fn places(config: &DeployConfig, trial: u32) -> Vec<Vec2> {
         obstacles: vec![ObstacleConfig::Disc {
             at: (Finite::new(2.0), Finite::new(1.5)),
             radius: Positive::new(0.4),
+            attenuation: None,
         }],
     };
     let poses = deploy(config, &arena, 60, 0.07, &Streams::new(3, trial)).expect("room for all");

@@ -14,6 +14,7 @@ mod observers;
 mod pairs;
 mod phases;
 mod radio;
+mod reach;
 mod scaling;
 mod sends;
 mod wandering;

@@ -6,19 +6,20 @@ use super::super::scene::Scene;
 use super::canvas::Canvas;
 use super::style::{self, FAILED, LINK, TARGET};
 use super::{obstacles, subtitle};
-use crate::geometry::{Vec2, at_most};
+use crate::geometry::Vec2;
 use crate::metrics::{RobotState, TrialRecord};
+use crate::radio::Reach;
 
 /// Above this many robots their numbers would hide them.
 const MOST_LABELS: usize = 200;
 
 /// Draws from the back to the front: obstacles, links, chains, targets, robots, numbers.
-pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
+pub fn draw(scene: &Scene, record: &TrialRecord, reach: &Reach) -> Document {
     let size = Vec2::new(scene.arena.size.0.get(), scene.arena.size.1.get());
     let mut canvas = Canvas::new(size, &scene.name, &subtitle(record));
     let robots = &record.robots;
     obstacles(&mut canvas, &scene.arena.obstacles);
-    let links: Vec<_> = links(robots, scene.range).collect();
+    let links = record.links_at_end(reach);
     canvas.lines(links.iter().copied(), style::link(links.len()));
     let targets = worked_for(robots);
     for &target in &targets {
@@ -40,11 +41,11 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
             canvas.label(robot.pose.position, &number.to_string());
         }
     }
-    legend(&mut canvas, scene, robots, &targets, failed.len());
+    legend(&mut canvas, scene, reach, robots, &targets, failed.len());
     canvas.finish()
 }
 
-fn legend(canvas: &mut Canvas, scene: &Scene, robots: &[RobotState], targets: &[u16], failed: usize) {
+fn legend(canvas: &mut Canvas, scene: &Scene, reach: &Reach, robots: &[RobotState], targets: &[u16], failed: usize) {
     for (number, name) in scene.roles.iter().enumerate() {
         let count = robots.iter().filter(|robot| usize::from(robot.role) == number).count();
         if count > 0 {
@@ -63,21 +64,14 @@ fn legend(canvas: &mut Canvas, scene: &Scene, robots: &[RobotState], targets: &[
             "target",
         );
     }
-    canvas.legend_stroke(LINK, &format!("within range ({} m)", scene.range));
+    let within = match reach {
+        Reach::Disk(range) => format!("within range ({range} m)"),
+        Reach::Links(_) => "within range".to_owned(),
+    };
+    canvas.legend_stroke(LINK, &within);
     for &target in targets {
         canvas.legend_stroke(style::chain(target.into()), &format!("chain to target {target}"));
     }
-}
-
-/// Pairs of robots within `range` of each other.
-fn links(robots: &[RobotState], range: f64) -> impl Iterator<Item = (Vec2, Vec2)> {
-    robots.iter().enumerate().flat_map(move |(index, robot)| {
-        let from = robot.pose.position;
-        let others = robots[index + 1..].iter().map(|other| other.pose.position);
-        others
-            .filter(move |to| (to - from).norm() <= at_most(range))
-            .map(move |to| (from, to))
-    })
 }
 
 /// The targets that some robot works for, in order.

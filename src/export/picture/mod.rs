@@ -15,15 +15,16 @@ use super::scene::Scene;
 use crate::geometry::Vec2;
 use crate::metrics::{Outcome, TrialRecord};
 use crate::motion::ObstacleConfig;
+use crate::radio::Reach;
 
 impl Scene {
-    /// The pictures of a trial, with their kinds. Where its robots ended: by role, with the links within range (as in the paper's figure
-    /// 2) and the chains to each target. And their paths, by their roles at the end.
+    /// The pictures of a trial in which robots were in range of each other as `reach` says, with their kinds. Where its robots ended: by role, with
+    /// the links within range (as in the paper's figure 2) and the chains to each target. And their paths, by their roles at the end.
     #[must_use]
-    pub fn draw(&self, record: &TrialRecord) -> Vec<(&'static str, String)> {
+    pub fn draw(&self, record: &TrialRecord, reach: &Reach) -> Vec<(&'static str, String)> {
         let [last, paths] = PICTURES;
         vec![
-            (last, format!("{}\n", final_state::draw(self, record))),
+            (last, format!("{}\n", final_state::draw(self, record, reach))),
             (paths, format!("{}\n", trajectories::draw(self, record))),
         ]
     }
@@ -45,10 +46,10 @@ fn subtitle(record: &TrialRecord) -> String {
 fn obstacles(canvas: &mut canvas::Canvas, obstacles: &[ObstacleConfig]) {
     for obstacle in obstacles {
         match obstacle {
-            ObstacleConfig::Disc { at, radius } => {
+            ObstacleConfig::Disc { at, radius, .. } => {
                 canvas.disc(Vec2::new(at.0.get(), at.1.get()), radius.get(), style::OBSTACLE);
             }
-            ObstacleConfig::Wall { from, to } => canvas.line(
+            ObstacleConfig::Wall { from, to, .. } => canvas.line(
                 Vec2::new(from.0.get(), from.1.get()),
                 Vec2::new(to.0.get(), to.1.get()),
                 style::Stroke {

@@ -3,6 +3,7 @@
 use petgraph::unionfind::UnionFind;
 
 use crate::geometry::{Vec2, at_most};
+use crate::radio::{Placed, Reach};
 
 /// An undirected simple graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,25 +34,43 @@ impl Graph {
         Self { vertices, edges }
     }
 
-    /// The unit-disk graph of the paper's section 3.1: an edge where two positions are [at most](at_most) `range` metres apart.
-    /// Vertices are numbered along the longer side of the swarm, not by robot: neighbours then have near numbers, which
-    /// makes the search a sweep and the Laplacian's factor narrow.
+    /// The graph of robots, each with its place: an edge where two hear each other. Vertices are numbered along the longer side of the swarm, not by
+    /// robot: neighbours then have near numbers, which makes the search a sweep and the Laplacian's factor narrow.
+    #[must_use]
+    pub fn of_reach(robots: impl Iterator<Item = Placed>, reach: &Reach) -> Self {
+        match reach {
+            Reach::Disk(range) => Self::within_range(&robots.map(|(_, place)| place).collect::<Vec<_>>(), *range),
+            Reach::Links(_) => {
+                let linked = |a: &Placed, b: &Placed| reach.linked(*a, *b);
+                Self::swept(robots.collect(), |robot| robot.1, reach.farthest(), linked)
+            }
+        }
+    }
+
+    /// The unit-disk graph of the paper's section 3.1: an edge where two positions are [at most](at_most) `range` metres apart. Vertices are
+    /// numbered as in [`of_reach`](Self::of_reach).
     #[must_use]
     pub fn within_range(positions: &[Vec2], range: f64) -> Self {
+        Self::swept(positions.to_vec(), |place| *place, range, |_, _| true)
+    }
+
+    /// An edge where two of `points` are at most `range` metres apart and `linked`.
+    fn swept<T>(mut points: Vec<T>, place: impl Fn(&T) -> Vec2, range: f64, linked: impl Fn(&T, &T) -> bool) -> Self {
         let range = at_most(range);
-        let axis = longer_axis(positions);
-        let mut along = positions.to_vec();
-        along.sort_by(|a, b| a[axis].total_cmp(&b[axis]));
-        let mut edges = Vec::with_capacity(4 * positions.len());
-        for (i, a) in along.iter().enumerate() {
-            let ahead = along[i + 1..].iter().take_while(|b| b[axis] - a[axis] <= range);
+        let axis = longer_axis(&points, &place);
+        points.sort_by(|a, b| place(a)[axis].total_cmp(&place(b)[axis]));
+        let mut edges = Vec::with_capacity(4 * points.len());
+        for (i, a) in points.iter().enumerate() {
+            let here = place(a);
+            let ahead = points[i + 1..].iter();
+            let ahead = ahead.take_while(|b| place(b)[axis] - here[axis] <= range);
             let near = ahead
                 .zip(i + 1..)
-                .filter(|(b, _)| (*b - a).norm_squared() <= range * range);
+                .filter(|(b, _)| (place(b) - here).norm_squared() <= range * range && linked(a, b));
             edges.extend(near.map(|(_, j)| [i as u32, j as u32]));
         }
         Self {
-            vertices: positions.len(),
+            vertices: points.len(),
             edges,
         }
     }
@@ -90,10 +109,10 @@ impl Graph {
     }
 }
 
-/// The axis on which `positions` extend further.
-fn longer_axis(positions: &[Vec2]) -> usize {
+/// The axis on which `points` extend further.
+fn longer_axis<T>(points: &[T], place: &impl Fn(&T) -> Vec2) -> usize {
     let extent = |axis: usize| {
-        let coordinates = || positions.iter().map(|p| p[axis]);
+        let coordinates = || points.iter().map(|point| place(point)[axis]);
         coordinates().fold(f64::NEG_INFINITY, f64::max) - coordinates().fold(f64::INFINITY, f64::min)
     };
     usize::from(extent(1) > extent(0))

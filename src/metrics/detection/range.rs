@@ -1,13 +1,16 @@
 //! Who comes within range of whom and leaves it, among robots that watch each other.
 //!
-//! Between two ticks robots move in straight lines, so the instant at which two of them cross the range is the root of a square
-//! equation. And in a tick a robot gets only so far: a pair that is far from the range is looked at again when it could have come
-//! near, and not before. So following costs little a pair, and nothing at all where nobody moves.
+//! Between two ticks robots move in straight lines, so over a disk the instant at which two of them cross the range is the root of a square
+//! equation. Over links it is the tick by which they have crossed it, and each direction is followed by itself. And in a tick a robot gets only
+//! so far: a pair that is far from the range is looked at again when it could have come near, and not before. So following costs little a pair, and
+//! nothing at all where nobody moves.
 
 use std::collections::VecDeque;
 
 use crate::engine::{ActorId, SimTime, Span};
+use crate::geometry::{Vec2, at_most};
 use crate::motion::World;
+use crate::radio::{Links, Reach};
 
 /// Ticks after which a pair is looked at again at the latest, less one.
 const TICKS: usize = 256;
@@ -15,60 +18,141 @@ const TICKS: usize = 256;
 /// Follows pairs of robots and says when they cross the range.
 #[derive(Debug)]
 pub struct Ranges {
-    range: f64,
-    /// Pairs by the tick at which they are looked at next: a ring; empty before anybody moves.
+    reach: Reach,
+    /// Pairs by the tick at which they are looked at next: a ring; empty before anybody is followed.
     due: Vec<Vec<Followed>>,
     /// The place in the ring of the present tick.
     now: usize,
     /// What happens until the next tick, in order of time.
     crossings: VecDeque<Crossing>,
+    /// Over links: where all are going.
+    ways: Ways,
 }
 
 /// A pair that is followed.
 #[derive(Clone, Copy, Debug)]
 struct Followed {
+    /// Who observes, and whom.
     pair: [ActorId; 2],
+    /// Whether the one is in range of the other: as far as has been looked.
     within: bool,
 }
 
-/// Two robots cross the range.
+/// A pair crosses the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Crossing {
     /// When.
     pub at: SimTime,
-    /// Who.
+    /// Who observes, and whom.
     pub pair: [ActorId; 2],
-    /// Whether they are within it from then on.
+    /// Whether the observer is in range of the other from then on.
     pub within: bool,
 }
 
-impl Ranges {
-    /// Follows nobody yet, with this range in metres.
-    pub fn new(range: f64) -> Self {
-        Self {
-            range,
-            due: Vec::new(),
-            now: 0,
-            crossings: VecDeque::new(),
+/// The ways of all robots from a tick to the next.
+#[derive(Debug, Default)]
+struct Ways {
+    since: SimTime,
+    tick: Span,
+    /// Where each robot was at the tick, metres, and its velocity, m/s.
+    courses: Vec<(Vec2, Vec2)>,
+    moving: bool,
+}
+
+impl Ways {
+    /// Takes in where robots go, which is known as long as nobody moves.
+    fn take(&mut self, world: &World) {
+        if world.is_moving() || self.moving || self.courses.is_empty() {
+            self.since = world.now();
+            self.tick = world.tick();
+            self.moving = world.is_moving();
+            self.courses.clear();
+            let robots = 0..world.positions().len() as u32;
+            self.courses.extend(robots.map(|robot| world.course(ActorId(robot))));
         }
     }
 
-    /// Whether pairs are followed: from the first time on that anybody moves.
+    /// When they end.
+    fn end(&self) -> SimTime {
+        self.since + self.tick
+    }
+
+    fn rest(&self, pair: [ActorId; 2]) -> bool {
+        pair.iter().all(|robot| self.courses[robot.index()].1 == Vec2::zeros())
+    }
+
+    fn apart(&self, [a, b]: [ActorId; 2]) -> f64 {
+        (self.courses[b.index()].0 - self.courses[a.index()].0).norm()
+    }
+
+    /// Whether the observer of `pair` hears the other at `at`.
+    fn connect(&self, pair: [ActorId; 2], at: SimTime, links: &dyn Links) -> bool {
+        let elapsed = at.since(self.since).as_secs();
+        let [observer, subject] = pair.map(|robot| {
+            let (place, velocity) = self.courses[robot.index()];
+            (robot, place + velocity * elapsed)
+        });
+        let near = (subject.1 - observer.1).norm_squared() <= at_most(links.farthest()).powi(2);
+        near && links.connects(subject, observer)
+    }
+}
+
+impl Ranges {
+    /// Follows nobody yet, among robots that are in range of each other as `reach` says.
+    pub fn new(reach: Reach) -> Self {
+        Self {
+            reach,
+            due: Vec::new(),
+            now: 0,
+            crossings: VecDeque::new(),
+            ways: Ways::default(),
+        }
+    }
+
+    /// Whether two robots are always in range of each other or neither is: who watches each other is then followed once, in either order.
+    pub fn are_mutual(&self) -> bool {
+        matches!(self.reach, Reach::Disk(_))
+    }
+
+    /// Whether pairs are followed: over a disk from the first time on that anybody moves.
     pub fn follows(&self) -> bool {
         !self.due.is_empty()
     }
 
     /// Begins to follow.
-    pub fn begin(&mut self) {
+    pub fn follow_from_now_on(&mut self) {
         self.due.resize_with(TICKS, Vec::new);
     }
 
-    /// Follows `pair`, which is within range as far as is known, from the next tick on. Nothing before it [begins](Self::begin).
-    pub fn follow(&mut self, pair: [ActorId; 2]) {
+    /// The run begins, with robots where `world` says.
+    pub fn begin(&mut self, world: &World) {
+        if !self.are_mutual() {
+            self.follow_from_now_on();
+            self.ways.take(world);
+        }
+    }
+
+    /// Robots go on to where `world` says, at each of its ticks.
+    pub fn go_on(&mut self, world: &World) {
+        if !self.are_mutual() {
+            self.ways.take(world);
+        }
+    }
+
+    /// Follows `pair` from `now` on, if anybody is followed. Whether it is within range then: over a disk it is taken to be, for the one has just
+    /// heard the other, and looked at from the next tick on.
+    pub fn follow(&mut self, pair: [ActorId; 2], now: SimTime) -> bool {
+        let [within, at_end] = match &self.reach {
+            Reach::Disk(_) => [true; 2],
+            Reach::Links(links) => [now, self.ways.end()].map(|at| self.ways.connect(pair, at, links.as_ref())),
+        };
+        let mut followed = Followed { pair, within };
+        followed.cross(|| self.ways.end(), at_end, &mut self.crossings);
         if self.follows() {
             let next = (self.now + 1) % TICKS;
-            self.due[next].push(Followed { pair, within: true });
+            self.due[next].push(followed);
         }
+        within
     }
 
     /// The next crossing, if it has come by `now`.
@@ -81,42 +165,75 @@ impl Ranges {
     pub fn look(&mut self, world: &World) {
         debug_assert!(self.crossings.is_empty(), "crossings of the past were taken");
         self.now = (self.now + 1) % TICKS;
+        match self.reach.clone() {
+            Reach::Disk(range) => {
+                let range = at_most(range);
+                self.look_at_all(|followed, _, crossings| followed.cross_disk(range, world, crossings));
+            }
+            Reach::Links(links) => {
+                // The most by which their distance changes in a tick, as below.
+                let most = reach(world);
+                self.look_at_all(|followed, ways, crossings| {
+                    followed.cross_links(links.as_ref(), ways, most, crossings)
+                });
+            }
+        }
+        self.crossings.make_contiguous().sort_unstable();
+    }
+
+    /// Has `look_at` note the crossings of those that are due, and say after how many ticks to look at them again.
+    fn look_at_all(&mut self, look_at: impl Fn(&mut Followed, &Ways, &mut VecDeque<Crossing>) -> usize) {
         let mut looked_at = std::mem::take(&mut self.due[self.now]);
         for mut followed in looked_at.drain(..) {
-            let ticks = self.look_at(&mut followed, world);
+            let ticks = look_at(&mut followed, &self.ways, &mut self.crossings);
             let next = (self.now + ticks) % TICKS;
             self.due[next].push(followed);
         }
         self.due[self.now] = looked_at;
-        self.crossings.make_contiguous().sort_unstable();
+    }
+}
+
+/// The most by which the distance of two robots changes in a tick, and more than the rounding of it, metres.
+fn reach(world: &World) -> f64 {
+    2.0 * world.max_travel() * (1.0 + 1e-9)
+}
+
+/// The ticks after which to look again at a pair that is so far from the range.
+fn ticks_until_near(gap: f64, reach: f64) -> usize {
+    ((gap / reach) as usize).min(TICKS - 1)
+}
+
+impl Followed {
+    /// From `at` on it is `within` range or not, which may be nothing new.
+    fn cross(&mut self, at: impl FnOnce() -> SimTime, within: bool, crossings: &mut VecDeque<Crossing>) {
+        if within != self.within {
+            self.within = within;
+            crossings.push_back(Crossing {
+                at: at(),
+                pair: self.pair,
+                within,
+            });
+        }
     }
 
-    /// Notes when `followed` crosses the range in the coming tick. Returns the ticks after which to look again.
-    fn look_at(&mut self, followed: &mut Followed, world: &World) -> usize {
-        let [(here, velocity), (there, others)] = followed.pair.map(|robot| world.course(robot));
+    /// Notes when it crosses the rim of the disk in the coming tick. Returns the ticks after which to look again.
+    fn cross_disk(&mut self, range: f64, world: &World, crossings: &mut VecDeque<Crossing>) -> usize {
+        let [(here, velocity), (there, others)] = self.pair.map(|robot| world.course(robot));
         let (apart, drift) = (there - here, others - velocity);
         let mut cross = |after: f64, within: bool| {
-            if within != followed.within {
-                followed.within = within;
-                self.crossings.push_back(Crossing {
-                    at: world.now() + Span::from_secs(after),
-                    pair: followed.pair,
-                    within,
-                });
-            }
+            self.cross(|| world.now() + Span::from_secs(after), within, crossings);
         };
-        cross(0.0, apart.norm_squared() <= self.range * self.range);
-        // The most by which their distance changes in a tick, and more than the rounding of it.
-        let reach = 2.0 * world.max_travel() * (1.0 + 1e-9);
-        let gap = (apart.norm() - self.range).abs();
+        cross(0.0, apart.norm_squared() <= range * range);
+        let reach = reach(world);
+        let gap = (apart.norm() - range).abs();
         if gap > reach {
-            return ((gap / reach) as usize).min(TICKS - 1);
+            return ticks_until_near(gap, reach);
         }
         // |apart + drift t|² = range²
         let (a, b, c) = (
             drift.norm_squared(),
             apart.dot(&drift),
-            apart.norm_squared() - self.range * self.range,
+            apart.norm_squared() - range * range,
         );
         let discriminant = b * b - a * c;
         if a > 0.0 && discriminant >= 0.0 {
@@ -132,100 +249,17 @@ impl Ranges {
         }
         1
     }
+
+    /// Notes whether it has crossed the range by the next tick; what it was by this one is known. Returns the ticks after which to look again.
+    fn cross_links(&mut self, links: &dyn Links, ways: &Ways, reach: f64, crossings: &mut VecDeque<Crossing>) -> usize {
+        if !ways.rest(self.pair) {
+            let within = ways.connect(self.pair, ways.end(), links);
+            self.cross(|| ways.end(), within, crossings);
+        }
+        let gap = ways.apart(self.pair) - at_most(links.farthest());
+        if gap > reach { ticks_until_near(gap, reach) } else { 1 }
+    }
 }
 
 #[cfg(test)]
-mod tests {
-    use std::collections::BTreeMap;
-
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::geometry::{Pose, Vec2, unit};
-    use crate::motion::{ArenaConfig, MotionConfig};
-    use crate::quantity::Positive;
-
-    const RANGE: f64 = 0.6;
-
-    /// A world in which eight robots stand in a row, 0.2 m apart.
-    fn row() -> World {
-        let config = MotionConfig {
-            max_speed: Positive::new(0.5),
-            ..MotionConfig::default()
-        };
-        let pose = |robot: u32| Pose {
-            position: Vec2::new(0.2 * f64::from(robot), 0.0),
-            heading: 0.0,
-        };
-        World::new(&config, &ArenaConfig::default(), (0..8).map(pose).collect(), RANGE)
-    }
-
-    fn pairs() -> impl Iterator<Item = [ActorId; 2]> {
-        (0..8).flat_map(|a| (0..a).map(move |b| [ActorId(a), ActorId(b)]))
-    }
-
-    fn cross_until(ranges: &mut Ranges, now: SimTime, within: &mut BTreeMap<[ActorId; 2], bool>) {
-        while let Some(crossing) = ranges.take_crossing(now) {
-            within.insert(crossing.pair, crossing.within);
-        }
-    }
-
-    proptest! {
-        /// Robots drive at random, and rest for more ticks than the ring has places; at instants between the ticks those are within
-        /// range of whom it is said.
-        #[test]
-        fn at_every_instant_those_are_in_range_that_have_crossed_it_into_it_and_not_out_again(
-            commands in prop::collection::vec((0_u32..8, 0.05..0.5_f64, 0.0..6.3_f64), 1..60),
-            rest in 0..400_usize, shares in prop::collection::vec(0.0..1.0_f64, 8),
-        ) {
-            let (mut world, mut ranges) = (row(), Ranges::new(RANGE));
-            let mut within: BTreeMap<[ActorId; 2], bool> = pairs().map(|pair| (pair, true)).collect();
-            let mut checked = 0;
-            for tick in 0..600 {
-                let drives = !(40..40 + rest).contains(&tick);
-                if !drives {
-                    (0..8).for_each(|robot| world.command(ActorId(robot), Vec2::zeros()));
-                } else if let Some(&(robot, speed, angle)) = commands.get(tick / 4) {
-                    world.command(ActorId(robot), unit(angle) * speed);
-                }
-                world.advance();
-                cross_until(&mut ranges, world.now(), &mut within);
-                if world.is_moving() {
-                    if !ranges.follows() {
-                        ranges.begin();
-                        pairs().for_each(|pair| ranges.follow(pair));
-                    }
-                    ranges.look(&world);
-                }
-                let at = world.now() + Span::from_secs(shares[tick % 8] * world.tick().as_secs());
-                cross_until(&mut ranges, at, &mut within);
-                for ([a, b], within) in &within {
-                    let distance = (world.position(*a, at) - world.position(*b, at)).norm();
-                    if ranges.follows() && (distance - RANGE).abs() > 1e-8 {
-                        checked += 1;
-                        prop_assert_eq!(*within, distance <= RANGE, "{} and {} at {}: {} m", a, b, at, distance);
-                    }
-                }
-            }
-            prop_assert!(checked > 0);
-        }
-    }
-
-    #[test]
-    fn a_pair_that_is_far_from_the_range_is_seldom_looked_at() {
-        let (mut world, mut ranges) = (row(), Ranges::new(5.0));
-        world.command(ActorId(0), Vec2::new(-0.1, 0.0));
-        world.advance();
-        ranges.begin();
-        pairs().for_each(|pair| ranges.follow(pair));
-        let mut looked_at = 0;
-        for _ in 0..200 {
-            looked_at += ranges.due[(ranges.now + 1) % TICKS].len();
-            ranges.look(&world);
-            assert_eq!(ranges.take_crossing(SimTime::NEVER), None);
-            world.advance();
-        }
-        // 1.6 m at least from the range, of which a tick makes up 0.1 m at most: every 16 ticks or more seldom.
-        assert!(looked_at <= 28 * (200 / 16 + 1), "{looked_at}");
-    }
-}
+mod tests;

@@ -2,11 +2,10 @@
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::Health;
-use crate::geometry::at_most;
 use crate::happenings::Inbox;
 use crate::motion::World;
 use crate::protocol::{Evidence, Note};
-use crate::radio::LossCause;
+use crate::radio::{LossCause, Reach};
 use crate::spool::Scratch;
 
 use super::log::StatusLog;
@@ -15,14 +14,14 @@ use super::range::{Crossing, Ranges};
 use super::record::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion, Verdict};
 
 /// What scoring needs to know of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Watching {
     /// How far back a suspicion is traced to the statuses that were missed.
     pub memory: Span,
     /// How long a detector waits for a status before it suspects.
     pub patience: Span,
-    /// The radio's range, metres.
-    pub range: f64,
+    /// Who is in range of whom.
+    pub reach: Reach,
 }
 
 /// Scores the failure detectors of one run.
@@ -49,7 +48,7 @@ impl Scorer {
         Self {
             log: StatusLog::new(robots, watching.memory),
             patience: watching.patience,
-            ranges: Ranges::new(at_most(watching.range)),
+            ranges: Ranges::new(watching.reach),
             health: vec![Health::WELL; robots],
             changed: vec![SimTime::ZERO; robots],
             silences: vec![Vec::new(); robots],
@@ -81,18 +80,26 @@ impl Scorer {
         self.log.lost(receiver, sender, sequence, cause);
     }
 
+    /// The run begins, with robots where `world` says.
+    pub fn begin(&mut self, world: &World) {
+        self.ranges.begin(world);
+    }
+
     /// Robots go on to where `world` says, at each of its ticks.
     pub fn tick(&mut self, world: &World) {
         self.cross_until(world.now());
+        self.ranges.go_on(world);
         if world.is_moving() {
             if !self.ranges.follows() {
-                self.ranges.begin();
+                self.ranges.follow_from_now_on();
                 for (observer, pairs) in (0..).map(ActorId).zip(&self.pairs) {
                     // Who watches each other is followed once.
                     let subjects = pairs.iter().map(|pair| pair.subject);
                     let first =
                         subjects.filter(|subject| observer < *subject || !watches(&self.pairs, *subject, observer));
-                    first.for_each(|subject| self.ranges.follow([observer, subject]));
+                    for subject in first {
+                        self.ranges.follow([observer, subject], world.now());
+                    }
                 }
             }
             self.ranges.look(world);
@@ -102,9 +109,11 @@ impl Scorer {
     /// Takes in who has crossed the range by `now`.
     fn cross_until(&mut self, now: SimTime) {
         while let Some(Crossing { at, pair, within }) = self.ranges.take_crossing(now) {
-            let [a, b] = pair;
-            self.cross(at, a, b, within);
-            self.cross(at, b, a, within);
+            let [observer, subject] = pair;
+            self.cross(at, observer, subject, within);
+            if self.ranges.are_mutual() {
+                self.cross(at, subject, observer, within);
+            }
         }
     }
 
@@ -182,18 +191,21 @@ impl Scorer {
         }
     }
 
-    /// `observer` watches `subject` from `now` on, in whose range it has been since they `met`, or from the start.
+    /// `observer` watches `subject` from `now` on, in whose range it has been since they `met`, or from the start, if it is.
     fn watch(&mut self, now: SimTime, observer: ActorId, subject: ActorId, met: Option<SimTime>) {
-        if !watches(&self.pairs, subject, observer) {
-            self.ranges.follow([observer, subject]);
-        }
+        let is_followed = self.ranges.are_mutual() && watches(&self.pairs, subject, observer);
+        let within = is_followed || self.ranges.follow([observer, subject], now);
+        let met = met.filter(|_| within);
+        let settled = || {
+            met.map_or(SimTime::ZERO, |met| {
+                let able = [observer, subject].map(|robot| self.changed[robot.index()]);
+                met.max(able[0]).max(able[1]) + self.patience
+            })
+        };
         let mut pair = Pair {
             subject,
             since: SimTime::NEVER,
-            settled: met.map_or(SimTime::ZERO, |met| {
-                let able = [observer, subject].map(|robot| self.changed[robot.index()]);
-                met.max(able[0]).max(able[1]) + self.patience
-            }),
+            settled: if within { settled() } else { SimTime::NEVER },
             suspicion: None,
             mistaken: false,
             failure: None,

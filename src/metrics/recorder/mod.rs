@@ -9,7 +9,7 @@ use crate::geometry::{Pose, Vec2};
 use crate::happenings::Inbox;
 use crate::motion::World;
 use crate::protocol::{CompletionConfig, MessageSize, Note, Topic};
-use crate::radio::LossCause;
+use crate::radio::{LossCause, Reach};
 use crate::spool::{Scratch, Spool};
 
 use closing::{ledger, robots};
@@ -41,8 +41,8 @@ pub struct Layout {
     pub roles: usize,
     /// Bytes of headers on air.
     pub headers: HeaderBytes,
-    /// C, the radio's range, metres.
-    pub radio_range: f64,
+    /// Who is in range of whom.
+    pub reach: Reach,
     /// Length of a control step.
     pub control_period: Span,
     /// What the swarm is asked to do, if anything.
@@ -86,7 +86,7 @@ pub struct RunEnd {
 #[derive(Debug)]
 pub struct Recorder {
     roles: usize,
-    radio_range: f64,
+    reach: Reach,
     control_period: Span,
     traffic: Traffic,
     latency: LatencyHistogram,
@@ -124,7 +124,6 @@ impl Recorder {
         } = layout;
         Self {
             roles: layout.roles,
-            radio_range: layout.radio_range,
             control_period: layout.control_period,
             traffic: Traffic::new(layout.robots, layout.roles, layout.topics, layout.headers),
             latency: LatencyHistogram::default(),
@@ -138,10 +137,11 @@ impl Recorder {
                 Watching {
                     memory: layout.status_memory,
                     patience: layout.patience,
-                    range: layout.radio_range,
+                    reach: layout.reach.clone(),
                 },
                 &scratch,
             ),
+            reach: layout.reach,
             status: layout.status,
             judge: layout
                 .mission
@@ -216,12 +216,12 @@ impl Recorder {
 
     /// A fault began or ended at `now`, with every robot at its place in `positions`.
     pub fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {
-        let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
+        let scene = Scene::new(&self.reports, &self.failures, positions, &self.reach);
         let mission = self.judge.as_ref().map(|judge| &judge.mission);
         let blow = mission.and_then(|mission| Healing::brace(change, mission, scene));
         self.failures.change(now, change, &self.reports);
         if let (Some(blow), Some(mission)) = (blow, mission) {
-            let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
+            let scene = Scene::new(&self.reports, &self.failures, positions, &self.reach);
             self.healing.strike(now, change.fault, &blow, mission, scene);
         }
         if let Subject::Robot { robot, health, .. } = change.subject {
@@ -248,6 +248,11 @@ impl Recorder {
         self.detection.belief(now, observer, note, inbox);
     }
 
+    /// The run begins, with robots where `world` says.
+    pub fn begin(&mut self, world: &World) {
+        self.detection.begin(world);
+    }
+
     /// Robots go on to where `world` says, at each of its ticks.
     pub fn tick(&mut self, world: &World) {
         self.detection.tick(world);
@@ -255,15 +260,12 @@ impl Recorder {
 
     /// Samples the graph of the live robots, the traffic since the sample before, and where everyone is, `positions` in order of ids.
     pub fn sample(&mut self, now: SimTime, positions: &[Vec2]) {
-        let live: Vec<Vec2> = (0..)
-            .zip(positions)
-            .filter(|(robot, _)| self.failures.is_live(ActorId(*robot)))
-            .map(|(_, position)| *position)
-            .collect();
-        let graph = Graph::within_range(&live, self.radio_range);
+        let robots = (0..).map(ActorId).zip(positions.iter().copied());
+        let live = robots.filter(|(robot, _)| self.failures.is_live(*robot));
+        let graph = Graph::of_reach(live, &self.reach);
         let (components, neighbours) = (graph.components() as u32, graph.mean_degree());
         let lambda2 = self.lambda2(graph);
-        let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
+        let scene = Scene::new(&self.reports, &self.failures, positions, &self.reach);
         self.connectivity.push(&ConnectivitySample {
             at: now,
             lambda2,
@@ -305,7 +307,7 @@ impl Recorder {
         let Some(judge) = &mut self.judge else {
             return Progress::Underway;
         };
-        let scene = Scene::new(&self.reports, &self.failures, positions, self.radio_range);
+        let scene = Scene::new(&self.reports, &self.failures, positions, &self.reach);
         if self.healing.is_open() {
             let now = SimTime::ZERO + self.control_period * step;
             self.healing.observe(now, &judge.mission, scene);

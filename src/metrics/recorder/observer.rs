@@ -19,6 +19,10 @@ impl Observer for Recorder {
         self.judge.is_some() || self.everyone_knows.is_some()
     }
 
+    fn begin(&mut self, world: &World) {
+        self.begin(world);
+    }
+
     fn noted<H>(&mut self, now: SimTime, robot: ActorId, note: &Note, inbox: &Inbox<'_, H>) {
         self.note(robot, note);
         self.belief(now, robot, note, inbox);

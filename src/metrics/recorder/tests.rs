@@ -13,7 +13,7 @@ fn recorder(mission: Option<Mission>) -> Recorder {
         topics: 2,
         roles: 2,
         headers: HeaderBytes { frame: 2, message: 3 },
-        radio_range: RANGE,
+        reach: Reach::Disk(RANGE),
         control_period: Span::from_secs(0.1),
         mission,
         rumors: 0,

@@ -209,6 +209,7 @@ mod tests {
     use crate::metrics::episode::{FaultEpisode, FaultKind};
     use crate::metrics::record::TargetSample;
     use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Recorder, RunEnd};
+    use crate::radio::Reach;
     use crate::spool::Scratch;
     use TargetState::{Away, Held, LinksShort, NoWorker};
 
@@ -221,7 +222,7 @@ mod tests {
             topics: 1,
             roles: 1,
             headers: HeaderBytes { frame: 2, message: 3 },
-            radio_range: 2.0,
+            reach: Reach::Disk(2.0),
             control_period: Span::from_secs(0.1),
             mission: None,
             rumors: 0,

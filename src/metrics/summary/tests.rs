@@ -10,7 +10,7 @@ use crate::metrics::episode::{FaultEpisode, FaultKind};
 use crate::metrics::volume::TopicFates;
 use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RumorSpread, RunEnd};
 use crate::protocol::{MessageSize, Note, Role, Topic};
-use crate::radio::LossCause;
+use crate::radio::{LossCause, Reach};
 
 mod detection;
 mod listed;
@@ -26,7 +26,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
         topics: 2,
         roles: 2,
         headers: HeaderBytes { frame: 2, message: 3 },
-        radio_range: 2.0,
+        reach: Reach::Disk(2.0),
         control_period: Span::from_secs(0.1),
         mission: Some(Mission {
             targets: vec![],

@@ -11,8 +11,10 @@ use super::bandwidth::WAYS;
 use super::chart::{axis, chart, shown, words};
 use super::figure::{Figure, Panel};
 use super::table::{Cell, DataTable};
-use crate::geometry::{Vec2, at_most};
+use crate::experiment::reach;
+use crate::geometry::Vec2;
 use crate::metrics::TrialRecord;
+use crate::radio::Reach;
 
 const HEIGHT: u32 = 460;
 
@@ -33,19 +35,24 @@ pub fn traffic(input: &PageInput) -> Option<Figure> {
         ];
         table.rows.push(row);
     }
+    let reach = reach(input.scenario, record.trial);
+    let within = match &reach {
+        Reach::Disk(range) => format!(" ({range} m)"),
+        Reach::Links(_) => String::new(),
+    };
     let panels = WAYS
         .iter()
         .zip(&loads)
-        .map(|((_, heading, _), load)| Panel::of_height(*heading, map(input, record, load), HEIGHT));
+        .map(|((_, heading, _), load)| Panel::of_height(*heading, map(input, record, &reach, load), HEIGHT));
     Some(Figure {
         id: "map".into(),
         title: "The swarm with its traffic".into(),
         caption: format!(
-            "Where the robots of trial {} (seed {}) ended. Grey lines join robots within range of each other ({} m); colour is what a robot \
+            "Where the robots of trial {} (seed {}) ended. Grey lines join robots within range of each other{}; colour is what a robot \
              sent, and received, in a control step over the whole trial, headers included; shapes are roles{}.",
             record.trial,
             record.seed,
-            input.scenario.radio.range.get(),
+            within,
             if targets(input).is_empty() {
                 ""
             } else {
@@ -64,7 +71,7 @@ fn targets(input: &PageInput) -> Vec<Vec2> {
     places.map(|(place, _)| place).collect()
 }
 
-fn map(input: &PageInput, record: &TrialRecord, load: &[f64]) -> Plot {
+fn map(input: &PageInput, record: &TrialRecord, reach: &Reach, load: &[f64]) -> Plot {
     let (width, height) = &input.scenario.arena.size;
     let half = [width.get() / 2.0, height.get() / 2.0];
     let side = |title: &str, half: f64| -> Axis {
@@ -78,7 +85,7 @@ fn map(input: &PageInput, record: &TrialRecord, load: &[f64]) -> Plot {
     };
     let y = side("y, m", half[1]).scale_anchor("x").scale_ratio(1.0);
     let mut plot = chart(side("x, m", half[0]), y, HoverMode::Closest);
-    plot.add_trace(links(record, input.scenario.radio.range.get()));
+    plot.add_trace(links(record, reach));
     let places = targets(input);
     if !places.is_empty() {
         let marks = Scatter::new(
@@ -188,18 +195,12 @@ fn scale() -> Vec<ColorScaleElement> {
         .into()
 }
 
-/// A line for each pair of robots within `range`, all in one trace, with a gap after each.
-fn links(record: &TrialRecord, range: f64) -> Box<Scatter<Option<f64>, Option<f64>>> {
+/// A line for each pair of robots that hear each other, all in one trace, with a gap after each.
+fn links(record: &TrialRecord, reach: &Reach) -> Box<Scatter<Option<f64>, Option<f64>>> {
     let (mut x, mut y) = (Vec::new(), Vec::new());
-    for (index, robot) in record.robots.iter().enumerate() {
-        let from = robot.pose.position;
-        for other in &record.robots[index + 1..] {
-            let to = other.pose.position;
-            if (to - from).norm() <= at_most(range) {
-                x.extend([Some(shown(from.x)), Some(shown(to.x)), None]);
-                y.extend([Some(shown(from.y)), Some(shown(to.y)), None]);
-            }
-        }
+    for (from, to) in record.links_at_end(reach) {
+        x.extend([Some(shown(from.x)), Some(shown(to.x)), None]);
+        y.extend([Some(shown(from.y)), Some(shown(to.y)), None]);
     }
     Scatter::new(x, y)
         .name("within range")

@@ -5,6 +5,7 @@ use super::transmit::copy_of;
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::Health;
 use crate::happenings::Observer;
+use crate::motion::World;
 use crate::protocol::{Protocol, Reception};
 use crate::radio::{Arrival, FrameId, LossCause};
 
@@ -17,10 +18,10 @@ impl<P: Protocol> Air<P> {
         self.medium.next()
     }
 
-    /// Lets the radio do what is due at `now`.
-    pub fn advance(&mut self, now: SimTime, observer: &mut impl Observer) {
+    /// Lets the radio do what is due at `now`, with everybody where `world` has them.
+    pub fn advance(&mut self, now: SimTime, world: &World, observer: &mut impl Observer) {
         while self.medium.next() <= now {
-            if let Some(frame) = self.medium.advance(now, &mut self.fates) {
+            if let Some(frame) = self.medium.advance(now, world, &mut self.fates) {
                 self.decide(now, frame, observer);
             }
         }
@@ -60,9 +61,16 @@ impl<P: Protocol> Air<P> {
 
     /// From `now` on the radio of `robot` does what its `health` allows. A copy is lost if its receiver cannot hear at the instant of its arrival;
     /// one that arrived before can still be read.
-    pub fn set_health(&mut self, now: SimTime, robot: ActorId, health: Health, observer: &mut impl Observer) {
+    pub fn set_health(
+        &mut self,
+        now: SimTime,
+        robot: ActorId,
+        health: Health,
+        world: &World,
+        observer: &mut impl Observer,
+    ) {
         let Health { sends, hears, .. } = health;
-        self.medium.enable(now, robot, sends, hears);
+        self.medium.enable(now, world, robot, sends, hears);
         if hears != self.hears(robot) {
             self.set_hearing(now, robot, hears, observer);
         }

@@ -15,7 +15,7 @@ use crate::happenings::Observer;
 use crate::metrics::HeaderBytes;
 use crate::motion::World;
 use crate::protocol::{Frame, Output, Protocol};
-use crate::radio::{Fates, Listener, Medium};
+use crate::radio::{Fates, Links, Listener, Medium, Reach};
 
 mod encode;
 mod hearing;
@@ -54,7 +54,7 @@ pub struct Surroundings<'a> {
 /// The radio's side of a run.
 pub struct Air<P: Protocol> {
     medium: Box<dyn Medium>,
-    range: f64,
+    reach: Reach,
     headers: HeaderBytes,
     codec: P::Codec,
     inboxes: Vec<Inbox<P::Heard>>,
@@ -97,7 +97,7 @@ impl<P: Protocol> Air<P> {
         wake_on_reception: bool,
     ) -> Self {
         Self {
-            range: medium.range(),
+            reach: medium.reach(),
             medium,
             headers,
             codec: P::Codec::default(),
@@ -130,7 +130,7 @@ impl<P: Protocol> Air<P> {
     /// Asks for what waits for `robot`, and for who will hear it.
     pub fn prefetch_contents(&self, robot: ActorId, world: &World) {
         self.inboxes[robot.index()].prefetch_contents();
-        world.prefetch_neighbours(robot, self.range);
+        world.prefetch_neighbours(robot, self.reach.farthest());
     }
 
     /// So long what a robot sends reaches nobody.
@@ -152,15 +152,20 @@ impl<P: Protocol> Air<P> {
         self.listeners.clear();
         let Self { listeners, inboxes, .. } = self;
         let prefetches = self.prefetches;
-        world.for_each_within(sender, now, self.range, |id, from_sender| {
-            if prefetches {
-                prefetch(&inboxes[id.index()]);
+        match &self.reach {
+            Reach::Disk(range) => {
+                world.for_each_within(sender, now, *range, |id, from_sender| {
+                    if prefetches {
+                        prefetch(&inboxes[id.index()]);
+                    }
+                    listeners.push(Listener {
+                        id,
+                        sender: -from_sender,
+                    });
+                });
             }
-            listeners.push(Listener {
-                id,
-                sender: -from_sender,
-            });
-        });
+            Reach::Links(links) => find_linked(links.as_ref(), world, now, sender, listeners),
+        }
         self.hindrances.clear();
         if faults.trouble_links() {
             let here = self.position;
@@ -174,10 +179,10 @@ impl<P: Protocol> Air<P> {
             // Nearly always: each message is for everyone, in a frame of its own.
             for message in output.broadcasts.drain(..) {
                 let spoken = self.encode(now, sender, None, message, observer)?;
-                self.transmit::<false>(now, std::slice::from_ref(&spoken), faults, observer);
+                self.transmit::<false>(now, std::slice::from_ref(&spoken), place, observer);
             }
         } else {
-            self.say_in_turn(now, sender, output, faults, observer)?;
+            self.say_in_turn(now, sender, output, place, observer)?;
         }
         observer.spoke(now, sender, world);
         Ok(())
@@ -189,7 +194,7 @@ impl<P: Protocol> Air<P> {
         now: SimTime,
         sender: ActorId,
         output: &mut Output<P::Message>,
-        faults: &Faults,
+        place: Surroundings<'_>,
         observer: &mut impl Observer,
     ) -> Result<(), RunError> {
         for (to, message) in output.drain_said() {
@@ -197,15 +202,29 @@ impl<P: Protocol> Air<P> {
             if self.piggyback {
                 self.aboard.push(spoken);
             } else {
-                self.send(now, std::slice::from_ref(&spoken), faults, observer);
+                self.send(now, std::slice::from_ref(&spoken), place, observer);
             }
         }
         if !self.aboard.is_empty() {
             let mut aboard = std::mem::take(&mut self.aboard);
-            self.send(now, &aboard, faults, observer);
+            self.send(now, &aboard, place, observer);
             aboard.clear();
             self.aboard = aboard;
         }
         Ok(())
     }
+}
+
+/// Adds to `listeners` who is in range of `sender` at `now` as `links` say.
+#[inline(never)]
+fn find_linked(links: &dyn Links, world: &World, now: SimTime, sender: ActorId, listeners: &mut Vec<Listener>) {
+    let here = world.position(sender, now);
+    world.for_each_around(here, now, links.farthest(), |id, there| {
+        if id != sender && links.connects((sender, here), (id, there)) {
+            listeners.push(Listener {
+                id,
+                sender: here - there,
+            });
+        }
+    });
 }

@@ -2,7 +2,7 @@
 
 use std::borrow::Borrow as _;
 
-use super::{Air, Numbers, Spoken};
+use super::{Air, Numbers, Spoken, Surroundings};
 use crate::engine::{ActorId, SimTime};
 use crate::faults::Faults;
 use crate::happenings::{Copy, Observer};
@@ -83,18 +83,18 @@ impl<P: Protocol> Air<P> {
         &mut self,
         now: SimTime,
         aboard: &[Spoken<P::Heard>],
-        faults: &Faults,
+        place: Surroundings<'_>,
         observer: &mut impl Observer,
     ) {
         if aboard.iter().all(|spoken| spoken.to.is_none()) {
-            return self.transmit::<false>(now, aboard, faults, observer);
+            return self.transmit::<false>(now, aboard, place, observer);
         }
         self.give_up_far(now, aboard, observer);
         let everyone = P::OVERHEARS || aboard.iter().any(|spoken| spoken.to.is_none());
         if !everyone {
             self.narrow(aboard);
         }
-        self.transmit::<true>(now, aboard, faults, observer);
+        self.transmit::<true>(now, aboard, place, observer);
         if !everyone {
             std::mem::swap(&mut self.listeners, &mut self.all_listeners);
             std::mem::swap(&mut self.hindrances, &mut self.all_hindrances);
@@ -138,13 +138,13 @@ impl<P: Protocol> Air<P> {
         &mut self,
         now: SimTime,
         aboard: &[Spoken<P::Heard>],
-        faults: &Faults,
+        place: Surroundings<'_>,
         observer: &mut impl Observer,
     ) {
         let Frame { sender, sequence, .. } = aboard[0].frame;
         let number = Numbers::next(&mut self.numbers[sender.index()].frame);
         if !self.hindrances.is_empty() {
-            self.hinder(sender, number, faults);
+            self.hinder(sender, number, place.faults);
         }
         let to = aboard[0]
             .to
@@ -161,7 +161,7 @@ impl<P: Protocol> Air<P> {
                 &self.reachable
             },
         };
-        self.medium.transmit(&frame, &mut self.fates);
+        self.medium.transmit(&frame, place.world, &mut self.fates);
         debug_assert_eq!(self.fates.len(), self.listeners.len(), "each listener has one fate");
         if self.prefetches {
             self.prefetch_fates(P::topic(aboard[0].frame.message.borrow()), observer);

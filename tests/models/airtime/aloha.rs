@@ -3,9 +3,11 @@
 //! What overlaps at a receiver is lost there, and so is what arrives while the receiver itself sends. A frame that its sender does not send to the
 //! end, or that its receiver does not hear from the beginning to the end, is lost too. All is known at the end of a frame, one event.
 
-use desim::engine::{ActorId, SimTime, Span, Streams};
+use desim::engine::{ActorId, SimTime, Span};
 use desim::geometry::Vec2;
-use desim::radio::{Fate, Fates, FrameId, Listener, LossCause, Medium, RadioKind, Transmission};
+use desim::radio::{
+    Fate, Fates, FrameId, Listener, LossCause, Medium, Places, RadioKind, RadioSite, Reach, Transmission,
+};
 
 /// Its settings.
 #[derive(Clone, Copy, Debug)]
@@ -24,12 +26,12 @@ impl Aloha {
 }
 
 impl RadioKind for Aloha {
-    fn medium(&self, _: &Streams, robots: usize) -> Box<dyn Medium> {
+    fn medium(&self, site: &RadioSite) -> Box<dyn Medium> {
         Box::new(Air {
             settings: *self,
             bursts: Vec::new(),
-            free_from: vec![SimTime::ZERO; robots],
-            hears_from: vec![SimTime::ZERO; robots],
+            free_from: vec![SimTime::ZERO; site.robots],
+            hears_from: vec![SimTime::ZERO; site.robots],
         })
     }
 }
@@ -84,15 +86,15 @@ impl Air {
 }
 
 impl Medium for Air {
-    fn range(&self) -> f64 {
-        self.settings.range
+    fn reach(&self) -> Reach {
+        Reach::Disk(self.settings.range)
     }
 
     fn lookahead(&self) -> Span {
         self.settings.airtime(1)
     }
 
-    fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+    fn transmit(&mut self, frame: &Transmission<'_>, _: &dyn Places, fates: &mut Fates) {
         let free_from = &mut self.free_from[frame.frame.sender.index()];
         let begins = frame.at.max(*free_from);
         *free_from = begins + self.settings.airtime(frame.bytes);
@@ -115,7 +117,7 @@ impl Medium for Air {
         open.map(|burst| burst.ends).min().unwrap_or(SimTime::NEVER)
     }
 
-    fn advance(&mut self, now: SimTime, fates: &mut Fates) -> Option<FrameId> {
+    fn advance(&mut self, now: SimTime, _: &dyn Places, fates: &mut Fates) -> Option<FrameId> {
         let due = self
             .bursts
             .iter()
@@ -132,7 +134,7 @@ impl Medium for Air {
         Some(frame)
     }
 
-    fn enable(&mut self, now: SimTime, robot: ActorId, sends: bool, hears: bool) {
+    fn enable(&mut self, now: SimTime, _: &dyn Places, robot: ActorId, sends: bool, hears: bool) {
         let hears_from = &mut self.hears_from[robot.index()];
         if !hears {
             *hears_from = SimTime::NEVER;

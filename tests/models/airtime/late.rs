@@ -2,8 +2,10 @@
 
 use std::collections::VecDeque;
 
-use desim::engine::{ActorId, SimTime, Span, Streams};
-use desim::radio::{Disk, Fate, Fates, FrameId, Medium, RadioConfig, RadioKind, Transmission};
+use desim::engine::{ActorId, SimTime, Span};
+use desim::radio::{
+    Disk, Fate, Fates, FrameId, Medium, Places, RadioConfig, RadioKind, RadioSite, Reach, Transmission,
+};
 
 /// A disk radio with these settings, which says what becomes of a frame when its first copy could arrive.
 #[derive(Clone, Debug)]
@@ -14,8 +16,8 @@ pub struct Late {
 }
 
 impl RadioKind for Late {
-    fn medium(&self, streams: &Streams, robots: usize) -> Box<dyn Medium> {
-        let disk = Disk::new(&self.disk, streams, robots);
+    fn medium(&self, site: &RadioSite) -> Box<dyn Medium> {
+        let disk = Disk::new(&self.disk, &site.streams, site.robots);
         Box::new(Held {
             least: disk.lookahead(),
             disk,
@@ -41,17 +43,17 @@ struct Held {
 }
 
 impl Medium for Held {
-    fn range(&self) -> f64 {
-        self.disk.range()
+    fn reach(&self) -> Reach {
+        self.disk.reach()
     }
 
     fn lookahead(&self) -> Span {
         if self.tells { self.least } else { Span::ZERO }
     }
 
-    fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+    fn transmit(&mut self, frame: &Transmission<'_>, places: &dyn Places, fates: &mut Fates) {
         let mut known = Fates::default();
-        self.disk.transmit(frame, &mut known);
+        self.disk.transmit(frame, places, &mut known);
         for listener in frame.listeners {
             fates.push(listener.id, Fate::Open);
         }
@@ -66,7 +68,7 @@ impl Medium for Held {
         self.frames.front().map_or(SimTime::NEVER, |frame| frame.told_at)
     }
 
-    fn advance(&mut self, _: SimTime, fates: &mut Fates) -> Option<FrameId> {
+    fn advance(&mut self, _: SimTime, _: &dyn Places, fates: &mut Fates) -> Option<FrameId> {
         let frame = self.frames.pop_front()?;
         for (receiver, fate) in frame.known {
             fates.push(receiver, fate);

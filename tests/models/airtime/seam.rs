@@ -2,13 +2,15 @@
 
 use std::sync::{Arc, Mutex};
 
-use desim::engine::{ActorId, SimTime, Span, Streams};
+use desim::engine::{ActorId, SimTime, Span};
 use desim::geometry::Vec2;
 use desim::metrics::TrialRecord;
 use desim::protocol::control::{PhaseConfig, WakeConfig};
 use desim::protocol::{Input, Note, Output, Protocol, Serialised};
 use desim::quantity::{NonNegative, Positive, Probability};
-use desim::radio::{Fate, Fates, LatencyConfig, LossConfig, Medium, RadioConfig, RadioKind, Transmission};
+use desim::radio::{
+    Fate, Fates, LatencyConfig, LossConfig, Medium, Places, RadioConfig, RadioKind, RadioSite, Reach, Transmission,
+};
 use desim::simulation::{DriverKind, Finished, Inbox, Observer, Setup};
 use tokio_util::sync::CancellationToken;
 
@@ -24,21 +26,21 @@ type Handed = (u32, u32, u32, Option<u32>, Vec2, Vec<u32>);
 struct Tapped(Arc<Mutex<Vec<Handed>>>);
 
 impl RadioKind for Tapped {
-    fn medium(&self, _: &Streams, _: usize) -> Box<dyn Medium> {
+    fn medium(&self, _: &RadioSite) -> Box<dyn Medium> {
         Box::new(self.clone())
     }
 }
 
 impl Medium for Tapped {
-    fn range(&self) -> f64 {
-        1.5
+    fn reach(&self) -> Reach {
+        Reach::Disk(1.5)
     }
 
     fn lookahead(&self) -> Span {
         Span::ZERO
     }
 
-    fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+    fn transmit(&mut self, frame: &Transmission<'_>, _: &dyn Places, fates: &mut Fates) {
         let ears = frame.listeners.iter().map(|listener| listener.id.0).collect();
         self.0.lock().unwrap().push((
             frame.frame.sender.0,
@@ -293,25 +295,25 @@ fn a_radio_that_decides_twice_is_caught() {
     struct Twice;
     struct Again(Option<desim::radio::FrameId>, SimTime);
     impl RadioKind for Twice {
-        fn medium(&self, _: &Streams, _: usize) -> Box<dyn Medium> {
+        fn medium(&self, _: &RadioSite) -> Box<dyn Medium> {
             Box::new(Again(None, SimTime::NEVER))
         }
     }
     impl Medium for Again {
-        fn range(&self) -> f64 {
-            1.5
+        fn reach(&self) -> Reach {
+            Reach::Disk(1.5)
         }
         fn lookahead(&self) -> Span {
             Span::ZERO
         }
-        fn transmit(&mut self, frame: &Transmission<'_>, fates: &mut Fates) {
+        fn transmit(&mut self, frame: &Transmission<'_>, _: &dyn Places, fates: &mut Fates) {
             fates.push(ActorId(1), Fate::Lost(desim::radio::LossCause::Channel));
             *self = Self(Some(frame.frame), frame.at);
         }
         fn next(&self) -> SimTime {
             self.1
         }
-        fn advance(&mut self, _: SimTime, fates: &mut Fates) -> Option<desim::radio::FrameId> {
+        fn advance(&mut self, _: SimTime, _: &dyn Places, fates: &mut Fates) -> Option<desim::radio::FrameId> {
             self.1 = SimTime::NEVER;
             fates.push(ActorId(1), Fate::Lost(desim::radio::LossCause::Channel));
             self.0

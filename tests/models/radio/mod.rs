@@ -86,7 +86,7 @@ impl Channel {
         };
         *number += 1;
         let mut fates = Fates::default();
-        self.disk.transmit(&frame, &mut fates);
+        self.disk.transmit(&frame, &Vec::new(), &mut fates);
         let fates: BTreeMap<ActorId, Fate> = fates.drain().collect();
         for listener in listeners {
             receive(listener.id, fates[&listener.id]);

@@ -3,6 +3,8 @@
 use super::*;
 use crate::protocol::{Address, Frame, Reception};
 
+mod links;
+
 const OBSERVER: ActorId = ActorId(0);
 const SUBJECT: ActorId = ActorId(1);
 const MUTE: Health = Health {
@@ -51,7 +53,7 @@ impl Bench {
         let watching = Watching {
             memory: Span::from_secs(1000.0),
             patience: Span::from_secs(PATIENCE_S),
-            range: 2.0,
+            reach: Reach::Disk(2.0),
         };
         let mut bench = Self(Scorer::new(2, watching, &Scratch::default()));
         (0..=first).for_each(|second| bench.0.sent(at(f64::from(second)), SUBJECT, second, None));
@@ -106,16 +108,12 @@ impl Bench {
 }
 
 fn assert_time(record: &DetectionRecord, monitored: f64, mistaken: f64) {
-    assert!(
-        (record.monitored_s - monitored).abs() < 1e-9,
-        "monitored {} s",
-        record.monitored_s
-    );
-    assert!(
-        (record.mistaken_s - mistaken).abs() < 1e-9,
-        "mistaken {} s",
-        record.mistaken_s
-    );
+    for (what, told, expected) in [
+        ("monitored", record.monitored_s, monitored),
+        ("mistaken", record.mistaken_s, mistaken),
+    ] {
+        assert!((told - expected).abs() < 1e-9, "{what} {told} s");
+    }
 }
 
 fn first(record: &DetectionRecord) -> Suspicion {
