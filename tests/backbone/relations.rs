@@ -109,7 +109,7 @@ fn watch(scenario: &Scenario, trial: u32) -> (Vec<Vec<Ties>>, TrialRecord) {
         arena: scenario.arena.clone(),
         motion: scenario.motion.clone(),
         control: scenario.control.clone(),
-        radio: scenario.radio.clone(),
+        radio: scenario.radio.disk().into_owned(),
         faults: scenario.faults.clone(),
         ..Setup::default()
     };
