@@ -79,6 +79,12 @@ impl Span {
         if left == 0 || is_rounding { whole } else { whole + 1 }
     }
 
+    /// What is left of it without `other`, zero if that is longer.
+    #[must_use]
+    pub const fn less(self, other: Self) -> Self {
+        Self(self.0.saturating_sub(other.0))
+    }
+
     /// Length in nanoseconds.
     #[must_use]
     pub const fn as_nanos(self) -> u64 {

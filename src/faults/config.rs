@@ -141,11 +141,13 @@ pub enum Effect {
     Mute,
     /// It cannot hear.
     Deaf,
+    /// Its battery is empty: as a crash. Over a radio whose robots have a `battery`, what befalls those that have used it up.
+    Battery,
 }
 
 impl Effect {
     /// Every effect.
-    pub const ALL: [Self; 4] = [Self::Silence, Self::Crash, Self::Mute, Self::Deaf];
+    pub const ALL: [Self; 5] = [Self::Silence, Self::Crash, Self::Mute, Self::Deaf, Self::Battery];
 
     /// The name that reports and tables use.
     #[must_use]
@@ -155,6 +157,7 @@ impl Effect {
             Self::Crash => "crash",
             Self::Mute => "mute",
             Self::Deaf => "deaf",
+            Self::Battery => "battery",
         }
     }
 }

@@ -5,8 +5,8 @@ use super::config::{ChosenConfig, FaultConfig, IntervalConfig, LinksConfig, Robo
 /// A field's path, relative to the list of faults, and what to do about its value.
 pub type Problem = (String, String);
 
-/// More faults than this a scenario cannot have: they are numbered by two bytes.
-const MOST: usize = 1 << 16;
+/// More faults than this a scenario cannot have: they are numbered by two bytes, and one number is that of empty batteries.
+const MOST: usize = (1 << 16) - 1;
 /// Similarity (Jaro and Winkler, from 0 to 1) above which a name may be meant for another.
 const NEAR: f64 = 0.75;
 

@@ -77,7 +77,7 @@ impl Ailments {
         let Self { mute, deaf, stopped } = self;
         let ailments: &mut [&mut u16] = match effect {
             Effect::Silence => &mut [mute, deaf],
-            Effect::Crash => &mut [mute, deaf, stopped],
+            Effect::Crash | Effect::Battery => &mut [mute, deaf, stopped],
             Effect::Mute => &mut [mute],
             Effect::Deaf => &mut [deaf],
         };
@@ -107,6 +107,10 @@ pub struct Faults {
     now: SimTime,
     next: SimTime,
     draws: KeyedStreams,
+    /// The number behind those of the scenario's faults: that of empty batteries.
+    batteries: u16,
+    /// Whether any battery is empty.
+    exhausted: bool,
 }
 
 impl Faults {
@@ -137,6 +141,8 @@ impl Faults {
             now: SimTime::ZERO,
             next: SimTime::NEVER,
             draws: streams.keyed(LINK),
+            batteries: config.len() as u16,
+            exhausted: false,
         };
         faults.plan();
         faults
@@ -191,12 +197,28 @@ impl Faults {
         self.plan();
     }
 
+    /// The battery of `robot` is empty: it fails for good.
+    pub fn exhaust(&mut self, robot: ActorId) -> Change {
+        self.exhausted = true;
+        let mine = &mut self.ailments[robot.index()];
+        mine.add(Effect::Battery, true);
+        Change {
+            fault: self.batteries,
+            begins: true,
+            subject: Subject::Robot {
+                robot,
+                effect: Effect::Battery,
+                health: mine.health(),
+            },
+        }
+    }
+
     /// What `robot` can do.
     #[inline]
     #[must_use]
     pub fn health(&self, robot: ActorId) -> Health {
         // Every wake asks: where no robot ever fails, nothing is looked up.
-        if self.robots.is_empty() {
+        if self.robots.is_empty() && !self.exhausted {
             return Health::WELL;
         }
         self.ailments[robot.index()].health()

@@ -5,6 +5,7 @@
 //! [`Preflight::not_predicted`], with the reason. The closed forms of a model live with it ([`crate::motion::Spacing`],
 //! [`crate::radio::LossChain`]); those in which models meet are here. [`surprises`] holds them against the figures of a run.
 
+mod air;
 mod compare;
 mod detection;
 mod reading;
@@ -48,6 +49,10 @@ impl Preflight {
             predictions: Vec::new(),
             not_predicted: Vec::new(),
         };
+        if scenario.radio.shared().is_some() {
+            air::predict(&scene, &mut preflight);
+            return preflight;
+        }
         swarm::predict(&scene, &mut preflight);
         traffic::predict(&scene, &mut preflight);
         detection::predict(&scene, &mut preflight);

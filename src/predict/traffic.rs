@@ -78,7 +78,7 @@ fn latency(scene: &Scene<'_>, preflight: &mut Preflight) {
     });
 }
 
-fn sent(scene: &Scene<'_>, preflight: &mut Preflight) {
+pub fn sent(scene: &Scene<'_>, preflight: &mut Preflight) {
     let steps = scene.steps_a_status();
     let bytes = scene.status_bytes();
     // A trial has one status more than whole intervals, or less.

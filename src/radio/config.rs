@@ -115,6 +115,7 @@ struct Fields {
     noise: Option<Vec<NoiseConfig>>,
     negligible: Option<NonNegative>,
     range_payload: Option<u16>,
+    battery: Option<Positive>,
     range: Option<Positive>,
     loss: Option<LossConfig>,
     latency: Option<LatencyConfig>,
@@ -146,6 +147,7 @@ impl Fields {
             ("noise", self.noise.is_some()),
             ("negligible", self.negligible.is_some()),
             ("range_payload", self.range_payload.is_some()),
+            ("battery", self.battery.is_some()),
         ];
         let strange: &[_] = if self.technology.is_some() { &disk } else { &shared };
         strange.iter().filter(|field| field.1).map(|field| field.0).collect()
@@ -169,6 +171,7 @@ impl Fields {
             negligible: self.negligible.unwrap_or(own.negligible),
             message_header_bytes: self.message_header_bytes,
             range_payload: self.range_payload.unwrap_or(own.range_payload),
+            battery: self.battery,
             sensing: self.sensing.unwrap_or(own.sensing),
             technology: own.technology,
         }

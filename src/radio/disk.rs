@@ -1,20 +1,25 @@
-//! The disk radio: whoever is within its range hears, but for what the channel drops. The instant case of a medium.
+//! The disk radio: whoever is within its range hears, but for what the channel drops and walls stop. The instant case of a medium.
+
+use std::sync::Arc;
 
 use super::LossCause;
-use super::disk_config::DiskConfig;
+use super::disk_config::{DiskConfig, WallsConfig};
 use super::draw::{CHANNEL, FrameCopy, LatencyBits, unit_interval};
 use super::latency::Latency;
 use super::loss::Loss;
 use super::medium::{Fate, Fates, Listener, Medium, RadioKind, Transmission};
-use super::reach::Reach;
+use super::propagation::Walls;
+use super::reach::{Links, Placed, Reach};
 use super::sensing::Sensing;
 use super::site::{Places, RadioSite};
 use crate::engine::{KeyedStreams, SimTime, Span, Streams};
+use crate::geometry::at_most;
 
 /// The disk radio of one run. Its frames take no time on air and do not meet: the fate of each copy is settled when its frame is handed over.
 #[derive(Debug)]
 pub struct Disk {
     range: f64,
+    reach: Reach,
     loss: Loss,
     latency: Latency,
     channel: KeyedStreams,
@@ -27,13 +32,20 @@ pub struct Disk {
 
 impl RadioKind for DiskConfig {
     fn medium(&self, site: &RadioSite) -> Box<dyn Medium> {
-        Box::new(Disk::new(self, &site.streams, site.robots))
+        let mut disk = Disk::new(self, &site.streams, site.robots);
+        if self.walls == WallsConfig::Block && !site.obstacles.is_empty() {
+            disk.reach = Reach::Links(Arc::new(InSight {
+                range: disk.range,
+                walls: Walls::new(&site.obstacles, f64::INFINITY),
+            }));
+        }
+        Box::new(disk)
     }
 }
 
 impl Medium for Disk {
     fn reach(&self) -> Reach {
-        Reach::Disk(self.range)
+        self.reach.clone()
     }
 
     fn lookahead(&self) -> Span {
@@ -67,6 +79,23 @@ impl Medium for Disk {
     }
 }
 
+/// A disk that walls and obstacles of the arena stop.
+#[derive(Debug)]
+struct InSight {
+    range: f64,
+    walls: Walls,
+}
+
+impl Links for InSight {
+    fn farthest(&self) -> f64 {
+        self.range
+    }
+
+    fn connects(&self, (_, from): Placed, (_, to): Placed) -> bool {
+        (to - from).norm() <= at_most(self.range) && !self.walls.blocked(from, to)
+    }
+}
+
 impl Disk {
     /// The radio that `config` describes, for robots 0 to `robots` − 1, drawing from the `streams` of their trial.
     ///
@@ -84,6 +113,7 @@ impl Disk {
         let latency = Latency::new(&config.latency);
         Self {
             range,
+            reach: Reach::Disk(range),
             channel: streams.keyed(CHANNEL),
             certain: latency.constant().filter(|_| loss.is_none()),
             loss,

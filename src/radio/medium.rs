@@ -303,6 +303,7 @@ pub struct Fates {
     pub(crate) open: Vec<ActorId>,
     pub(crate) readings: Vec<Reading>,
     pub(crate) conclusions: Vec<Conclusion>,
+    pub(crate) exhausted: Vec<ActorId>,
 }
 
 /// A copy that will arrive.
@@ -336,6 +337,11 @@ impl Fates {
     /// The radio of its sender is done with a frame.
     pub fn conclude(&mut self, conclusion: Conclusion) {
         self.conclusions.push(conclusion);
+    }
+
+    /// The battery of `robot` is empty: from now on it does nothing.
+    pub fn exhaust(&mut self, robot: ActorId) {
+        self.exhausted.push(robot);
     }
 
     /// Of how many copies it holds the fate.

@@ -174,6 +174,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
                 Event::Fault => self.suffer(now),
                 Event::Radio => {
                     self.air.advance(now, &self.world, &mut self.observer);
+                    self.exhaust(now);
                     self.plan_radio();
                     self.wake_reached();
                     self.wake_told();
@@ -221,6 +222,18 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
         self.changes = changes;
         self.plan_faults();
         self.plan_radio();
+    }
+
+    /// Lets robots fail whose batteries are empty.
+    fn exhaust(&mut self, now: SimTime) {
+        while let Some(robot) = self.air.take_exhausted() {
+            self.locate(now);
+            let change = self.faults.exhaust(robot);
+            self.observer.fault(now, &change, &self.positions);
+            if let Subject::Robot { robot, health, .. } = change.subject {
+                self.ail(now, robot, health);
+            }
+        }
     }
 
     /// From `now` on `robot` can do what its `health` allows.

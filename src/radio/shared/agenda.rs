@@ -12,6 +12,8 @@ use crate::engine::SimTime;
 pub(super) enum Task {
     /// A burst ends.
     End(BurstId),
+    /// A robot's battery is looked at.
+    Battery(u32),
     /// A jammer is on.
     Jam(u32),
     /// A robot that has lost the power to send gives up what it still has to send, a frame at a time.

@@ -77,6 +77,9 @@ pub struct SharedConfig {
     /// Payload of the lone frame that decides who is in range: two robots are where it would come through half of the time, fading averaged out.
     #[serde(default = "twenty")]
     pub range_payload: u16,
+    /// What the battery of each robot holds for its radio, joules: a robot whose battery is empty fails for good. `None`: more than it needs.
+    #[serde(default)]
+    pub battery: Option<Positive>,
     /// Noise of the receiver's sense of where a sender is.
     #[serde(default)]
     pub sensing: SensingConfig,
@@ -183,6 +186,7 @@ impl SharedConfig {
             negligible: ten_decibels(),
             message_header_bytes: None,
             range_payload: twenty(),
+            battery: None,
             sensing: SensingConfig::default(),
         }
     }
@@ -343,7 +347,7 @@ impl SharedConfig {
             frame_header_bytes: phy.header_bytes as u16,
             message_header_bytes: self.message_header_bytes.unwrap_or(1),
             sensing: self.sensing.clone(),
-            walls: self.walls,
+            walls: WallsConfig::Pass,
         }
     }
 
@@ -389,7 +393,8 @@ impl Shared {
             .iter()
             .copied()
             .fold(0.0, |most: f64, skew| most.max(skew.abs()));
-        Self {
+        let mut shared = Self {
+            battery: config.battery.map(Positive::get),
             budget: Arc::new(config.budget(&phy, site)),
             scheme: access.scheme(&config.technology, &phy, robots, drift),
             receiver: Receiver::new(&phy, &access, jammers.background(), &site.streams),
@@ -409,6 +414,8 @@ impl Shared {
             spare: Vec::new(),
             shortest: phy.airtime(0),
             phy,
-        }
+        };
+        shared.plan_batteries();
+        shared
     }
 }

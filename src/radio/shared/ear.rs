@@ -39,9 +39,32 @@ pub(super) struct Ear {
     heard: VecDeque<Heard>,
     /// When it sent or turned round, and so heard nothing, in order of time.
     deaf: VecDeque<(SimTime, SimTime)>,
-    /// How long it has heard the channel busy, and until when it will.
-    busy: Span,
-    busy_until: SimTime,
+    /// How long it has found the channel busy, and how long it has heard frames of others.
+    pub busy: Union,
+    pub frames: Union,
+}
+
+/// The length of a union of intervals that begin one after another.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Union {
+    length: Span,
+    until: SimTime,
+}
+
+impl Union {
+    /// Adds an interval that begins no earlier than any before.
+    pub fn add(&mut self, begins: SimTime, ends: SimTime) {
+        let from = begins.max(self.until);
+        if ends > from {
+            self.length = self.length + ends.since(from);
+            self.until = ends;
+        }
+    }
+
+    /// How much of it lies before `now`, which none that was added begins after.
+    pub fn by(&self, now: SimTime) -> Span {
+        self.length.less(self.until.since(now))
+    }
 }
 
 impl Ear {
@@ -51,26 +74,6 @@ impl Ear {
             self.heard.pop_front();
         }
         self.heard.push_back(heard);
-    }
-
-    /// Notes that the channel is busy here from `begins` to `ends`, which is no earlier than what was noted before.
-    pub fn note_busy(&mut self, begins: SimTime, ends: SimTime) {
-        let from = begins.max(self.busy_until);
-        if ends > from {
-            self.busy = self.busy + ends.since(from);
-            self.busy_until = ends;
-        }
-    }
-
-    /// For how long the channel was busy here up to `now`.
-    pub fn busy_by(&self, now: SimTime) -> Span {
-        // What is on air now has been counted to its end.
-        if self.busy_until > now {
-            let ahead = self.busy_until.since(now);
-            Span::from_nanos(self.busy.as_nanos().saturating_sub(ahead.as_nanos()))
-        } else {
-            self.busy
-        }
     }
 
     /// It sends or turns round from `from` to before `until`. What ended before `since` is forgotten.

@@ -65,7 +65,7 @@ impl Shared {
             is_noise: false,
         };
         self.ears[robot.index()].hear(heard, since);
-        self.ears[robot.index()].note_busy(now, ends);
+        self.ears[robot.index()].busy.add(now, ends);
         let radio = &mut self.radios[robot.index()];
         radio.sent = radio.sent + airtime;
 
@@ -83,7 +83,10 @@ impl Shared {
                 let ear = &mut self.ears[other.index()];
                 ear.hear(heard, since);
                 if self.receiver.is_busy(&heard) {
-                    ear.note_busy(now, ends);
+                    ear.busy.add(now, ends);
+                }
+                if self.receiver.is_strong(&heard) {
+                    ear.frames.add(now, ends);
                 }
             }
         }
@@ -131,7 +134,7 @@ impl Shared {
                 let ear = &mut self.ears[robot.index()];
                 ear.hear(heard, since);
                 if self.receiver.is_busy(&heard) {
-                    ear.note_busy(now, ends);
+                    ear.busy.add(now, ends);
                 }
             }
         }
@@ -261,20 +264,6 @@ impl Shared {
         let round = dwell * channels;
         let place = (burst.begins.as_nanos() + phase % round) % round / dwell;
         place == u64::from(burst.channel)
-    }
-
-    /// What the radio of `robot` has done up to `now`.
-    pub(super) fn account_of(&self, now: SimTime, robot: ActorId) -> Account {
-        let radio = &self.radios[robot.index()];
-        let unsent = match radio.doing {
-            Doing::Sends(burst) => self.bursts.get(burst).map_or(Span::ZERO, |burst| burst.ends.since(now)),
-            _ => Span::ZERO,
-        };
-        Account {
-            sent: Span::from_nanos(radio.sent.as_nanos().saturating_sub(unsent.as_nanos())),
-            busy: self.ears[robot.index()].busy_by(now),
-            ..Account::default()
-        }
     }
 
     /// Whether `to` answers a burst that ends now, which it then plans.

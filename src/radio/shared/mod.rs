@@ -17,6 +17,7 @@ mod agenda;
 mod burst;
 mod config;
 mod ear;
+mod energy;
 mod exchange;
 mod jammer;
 mod link;
@@ -69,6 +70,8 @@ pub struct Shared {
     scans: KeyedStreams,
     /// The longest burst so far: what is older than two of these, and than what medium access looks back to, is over.
     longest: Span,
+    /// What each robot's battery holds at first, joules, if that is limited.
+    battery: Option<f64>,
     /// Bodies are in the way of light.
     body_radius: f64,
     /// Buffers.
@@ -163,6 +166,13 @@ impl Medium for Shared {
                 }
                 None
             }
+            Task::Battery(robot) => {
+                let robot = ActorId(robot);
+                if self.look_at_battery(now, robot) {
+                    fates.exhaust(robot);
+                }
+                None
+            }
             Task::Jam(jammer) => {
                 self.jam(now, jammer, places);
                 None
@@ -185,6 +195,12 @@ impl Medium for Shared {
             radio.hears_from = SimTime::NEVER;
         } else if radio.hears_from == SimTime::NEVER {
             radio.hears_from = now;
+        }
+        if !sends && !hears {
+            radio.off_since = radio.off_since.min(now);
+        } else {
+            radio.off = radio.off + now.since(radio.off_since);
+            radio.off_since = SimTime::NEVER;
         }
         if sends == radio.sends {
             return;
@@ -230,6 +246,7 @@ impl Shared {
                 let stamp = radio.replan(Doing::Turns);
                 let airtime =
                     radio.queue.front().map_or(Span::ZERO, |head| head.airtime) * u64::from(self.phy.channels);
+                radio.turned = radio.turned + self.scheme.turnaround() * 2;
                 let until = at + airtime + self.scheme.turnaround();
                 let since = self.since(now);
                 self.ears[robot.index()].deafen(now, until, since);

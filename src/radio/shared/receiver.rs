@@ -83,7 +83,12 @@ impl Receiver {
 
     /// Whether this makes the channel busy for those who ask how full it is: where nobody listens before sending, what is strong enough to be received.
     pub fn is_busy(&self, heard: &Heard) -> bool {
-        self.is_carrier(heard) || (self.assess.is_none() && heard.power >= self.sensitivity)
+        self.is_carrier(heard) || (self.assess.is_none() && self.is_strong(heard))
+    }
+
+    /// Whether this is strong enough to be received.
+    pub fn is_strong(&self, heard: &Heard) -> bool {
+        heard.power >= self.sensitivity
     }
 
     /// Whether it takes note of a frame that begins: as long as that takes the frame is strong enough over all else.

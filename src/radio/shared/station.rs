@@ -23,6 +23,13 @@ pub(super) struct Radio {
     pub hears_from: SimTime,
     /// How long it has been sending, what is on air now to its end.
     pub sent: Span,
+    /// How long it has been turning from hearing to sending and back.
+    pub turned: Span,
+    /// How long it was switched off, neither sending nor hearing, and since when it is; `NEVER` if it is on.
+    pub off: Span,
+    pub off_since: SimTime,
+    /// When its battery was empty; `NEVER` if it is not.
+    pub empty_at: SimTime,
 }
 
 /// What a radio is doing.
@@ -102,6 +109,10 @@ impl Default for Radio {
             sends: true,
             hears_from: SimTime::ZERO,
             sent: Span::ZERO,
+            turned: Span::ZERO,
+            off: Span::ZERO,
+            off_since: SimTime::NEVER,
+            empty_at: SimTime::NEVER,
         }
     }
 }

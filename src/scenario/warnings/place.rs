@@ -20,6 +20,22 @@ pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
     found
 }
 
+/// The field that says how far robots reach.
+fn reach(scenario: &Scenario) -> &'static str {
+    match scenario.radio.shared() {
+        None => "radio.range",
+        Some(_) => "radio.transmit_power",
+    }
+}
+
+/// What makes them reach farther.
+fn farther(scenario: &Scenario) -> &'static str {
+    match scenario.radio.shared() {
+        None => "`radio.range` greater",
+        Some(_) => "`radio.transmit_power` or `radio.path_loss` such that robots reach farther",
+    }
+}
+
 /// Ranges below what bodies keep apart, and far beyond the arena.
 fn range(scenario: &Scenario) -> Option<Problem> {
     let range = scenario.radio.disk().range.get();
@@ -27,14 +43,16 @@ fn range(scenario: &Scenario) -> Option<Problem> {
     if range < bodies {
         let message =
             format!("nobody ever hears anybody: bodies keep centres {bodies} m apart, and a radio reaches {range} m");
-        let help = "make `radio.range` greater, or `motion.body_radius` less";
-        return Some(Problem::new("radio.range", message, help).with(&["motion.body_radius"]));
+        let help = format!("make {}, or `motion.body_radius` less", farther(scenario));
+        return Some(Problem::new(reach(scenario), message, help).with(&["motion.body_radius"]));
     }
     let (width, height) = (scenario.arena.size.0.get(), scenario.arena.size.1.get());
     let diagonal = width.hypot(height);
     // Loss by distance is stated against the range, which may then lie where nobody is.
     let by_distance = matches!(scenario.radio.disk().loss, LossConfig::Distance { .. });
-    (range > FAR * diagonal && !by_distance).then(|| {
+    // That technologies reach far is no slip.
+    let is_set = scenario.radio.shared().is_none();
+    (is_set && range > FAR * diagonal && !by_distance).then(|| {
         let message = format!(
             "a range of {range} m is far beyond the arena, whose diagonal is {diagonal:.1} m: everybody hears everybody"
         );
@@ -91,8 +109,11 @@ fn deployment(scenario: &Scenario) -> Vec<Problem> {
             "from the start".to_owned()
         };
         let message = format!("the swarm stands in pieces {when}, out of each other's range of {range} m: {what}");
-        let help = "make `radio.range` greater, or deploy more robots or nearer to each other";
-        let also = ["radio.range", "swarm.robots", "arena.size"];
+        let help = format!(
+            "make {}, or deploy more robots or nearer to each other",
+            farther(scenario)
+        );
+        let also = [reach(scenario), "swarm.robots", "arena.size"];
         found.push(Problem::new("swarm.deploy", message, help).with(&also));
     }
     found

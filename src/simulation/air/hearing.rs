@@ -70,6 +70,11 @@ impl<P: Protocol> Air<P> {
         into.append(&mut self.told);
     }
 
+    /// The next robot whose battery is empty, if there is one.
+    pub fn take_exhausted(&mut self) -> Option<ActorId> {
+        self.fates.exhausted.pop()
+    }
+
     /// Tells what receivers measured of `frame`.
     fn tell_readings(&mut self, now: SimTime, frame: FrameId, observer: &mut impl Observer) {
         if self.powers.is_empty() {
