@@ -9,8 +9,8 @@ const CELL_BITS: u32 = 6;
 /// Bits of a float's mantissa, and those that say where in its cell it is.
 const MANTISSA_BITS: u32 = 23;
 const PLACE_BITS: u32 = MANTISSA_BITS - CELL_BITS;
-/// The first cell goes from 0 to here, −36 dB: all rates are almost those of guessing there.
-const FIRST: f32 = 1.0 / 4096.0;
+/// The first cell goes from 0 to here, −24 dB: all rates are almost those of guessing there.
+const FIRST: f32 = 1.0 / 256.0;
 /// No table goes beyond this ratio, 60 dB.
 const LARGEST: f32 = 1e6;
 /// Where the logarithm of survival is above −2^−60, nothing goes wrong: one in 10¹⁸ bits.

@@ -215,6 +215,23 @@ mod tests {
         }
     }
 
+    /// Phases are uniform, at the origin too: over n fields the mean of a sum of 32 cosines has a standard error of √(16/n).
+    #[test]
+    fn no_place_is_special() {
+        const FIELDS: u32 = 4000;
+        let mut sums = [0.0; 2];
+        for field in 0..FIELDS {
+            let streams = Streams::new(6, field).keyed(Purpose::new("test.waves"));
+            let waves = Waves::new(streams, 0, 1.0, |uniform| [uniform(), uniform(), uniform(), uniform()]);
+            let found = waves.phasors(waves.phases(), Vec2::zeros(), Vec2::zeros());
+            for (sum, found) in sums.iter_mut().zip(found) {
+                *sum += f64::from(found) / f64::from(FIELDS);
+            }
+        }
+        let four_errors = 4.0 * (16.0 / f64::from(FIELDS)).sqrt();
+        assert!(sums.iter().all(|mean| mean.abs() < four_errors), "{sums:?}");
+    }
+
     #[test]
     fn a_field_is_keyed_by_its_number_and_its_streams() {
         let (a, b) = (Vec2::new(1.0, 2.0), Vec2::new(3.0, 4.0));

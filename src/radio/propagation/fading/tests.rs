@@ -305,3 +305,14 @@ fn what_is_out_of_range_is_refused() {
         assert_eq!(config.problems(), []);
     }
 }
+
+#[test]
+fn fading_is_a_few_words_in_a_scenario() {
+    let read = |text| ron::from_str::<FadingConfig>(text);
+    assert_eq!(read("None"), Ok(FadingConfig::None));
+    assert_eq!(read("Rayleigh()"), Ok(rayleigh(0.0)));
+    assert_eq!(read("Rayleigh(doppler: 2.0)"), Ok(rayleigh(2.0)));
+    assert_eq!(read("Rician(k: 4.0)"), Ok(rician(4.0)));
+    assert_eq!(read("Nakagami(m: 3.0, doppler: 0.0)"), Ok(nakagami(3.0)));
+    assert!(read("Rician()").is_err() && read("Rayleigh(k: 1.0)").is_err());
+}

@@ -7,8 +7,8 @@ use libm::{cos, hypot, log10, pow, sin, sqrt};
 /// Distances that a search tries are a thousandth apart, or a fiftieth of the narrowest fringe.
 const STEP: f64 = 1e-3;
 const STEPS_OF_A_FRINGE: f64 = 50.0;
-/// Below this distance, metres, no search goes.
-const NEAREST: f64 = 1e-3;
+/// Nearer than this share of a wavelength no search goes.
+const NEAREST: f64 = 0.01;
 
 /// Two vertical antennas at the same height.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ impl TwoRay {
         let nearer = 1.0 - fringe.min(STEP);
         let mut near = far * nearer;
         while self.loss(near) > loss {
-            if near < NEAREST {
+            if near < NEAREST * self.wavelength {
                 return 0.0;
             }
             (far, near) = (near, near * nearer);

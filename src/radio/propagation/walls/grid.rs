@@ -153,17 +153,7 @@ impl Grid {
             let height = 1.0 / self.cells_per_metre.y;
             let bottom = self.bounds.least.y + row as f64 * height;
             let shares = [bottom - margin, bottom + height + margin].map(|y| (y - line.from.y) / along.y);
-            let first = row == 0;
-            let last = row + 1 == self.rows;
-            // What lies beyond the grid belongs to its outermost rows.
-            let [mut enters, mut leaves] = [shares[0].min(shares[1]), shares[0].max(shares[1])];
-            let (from_below, from_above) = (along.y > 0.0, along.y < 0.0);
-            if (first && from_below) || (last && from_above) {
-                enters = 0.0;
-            }
-            if (first && from_above) || (last && from_below) {
-                leaves = 1.0;
-            }
+            let [enters, leaves] = [shares[0].min(shares[1]), shares[0].max(shares[1])];
             part = [enters.clamp(0.0, 1.0), leaves.clamp(0.0, 1.0)];
         }
         let [left, right] = part.map(|share| line.from.x + along.x * share);

@@ -89,6 +89,9 @@ fn touching_the_end_of_a_wall_counts_once() {
     assert_loss(&walls, (0.0, -2.0), (0.0, -1.0), 0.0);
     assert_loss(&walls, (0.0, 0.5), (0.0, 0.5), 8.0);
     assert_loss(&walls, (0.5, 0.5), (0.5, 0.5), 0.0);
+    let slanted = [wall((0.0, 0.0), (2.0, 2.0))];
+    assert_loss(&slanted, (1.0, 1.0), (1.0, 1.0), 8.0);
+    assert_loss(&slanted, (0.5, 1.5), (0.5, 1.5), 0.0);
 }
 
 #[test]
@@ -109,7 +112,11 @@ fn through_the_corner_of_a_room_a_line_meets_the_thicker_wall_alone() {
 
 /// Coordinates on a coarse lattice make lines and ends meet exactly; others never do.
 fn coordinate() -> impl Strategy<Value = f64> {
-    prop_oneof![(-6..=6_i8).prop_map(f64::from), -7.0..7.0_f64]
+    prop_oneof![
+        (-6..=6_i8).prop_map(f64::from),
+        (-60..=60_i8).prop_map(|tenths| f64::from(tenths) / 10.0),
+        -7.0..7.0_f64,
+    ]
 }
 
 fn point() -> impl Strategy<Value = (f64, f64)> {
@@ -170,6 +177,34 @@ proptest! {
         let expected = by_hand(&obstacles, a, b);
         prop_assert!((walls.loss_db(a, b) - expected).abs() < 1e-9, "{} is not {expected}", walls.loss_db(a, b));
         prop_assert_eq!(walls.blocked(a, b), expected > 0.0);
+    }
+
+    /// Walls that end on a lattice, and lines through those ends: they meet where cells do.
+    #[test]
+    fn no_rounding_moves_a_line_out_of_the_cell_where_it_touches_a_wall(
+        step in prop::sample::select(vec![0.1, 0.3, 0.7, 1.1]),
+        offset in (0..20_u8).prop_map(|tenths| f64::from(tenths) * 0.1),
+        ends in prop::collection::vec((0..13_u8, 0..13_u8, any::<bool>()), 2..80),
+        along in prop::sample::select(vec![(1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -1.0), (1.0, 0.5)]),
+        steps in 1..4_u8,
+    ) {
+        let at = |index: u8| offset + f64::from(index) * step;
+        let back = |upright: bool| if upright { place(0.0, -0.3) } else { place(-0.3, 0.0) } * step;
+        let obstacles: Vec<Obstacle> = ends
+            .iter()
+            .map(|&(x, y, upright)| {
+                let from = place(at(x), at(y));
+                Obstacle { shape: ObstacleShape::Segment { from, to: from + back(upright) }, loss_db: None }
+            })
+            .collect();
+        let walls = Walls::new(&obstacles, 8.0);
+        let along = place(along.0, along.1) * (step * f64::from(steps));
+        for &(x, y, _) in &ends {
+            let end = place(at(x), at(y));
+            for (a, b) in [(end - along, end + along), (end, end + along)] {
+                prop_assert!((walls.loss_db(a, b) - by_hand(&obstacles, a, b)).abs() < 1e-9);
+            }
+        }
     }
 
     #[test]

@@ -156,3 +156,51 @@ fn a_technology_is_read_as_it_is_written() {
         );
     }
 }
+
+/// As a scenario file has it: structs in place of the variants' only fields, options without `Some`.
+fn read(text: &str) -> Result<TechnologyConfig, ron::error::SpannedError> {
+    use ron::extensions::Extensions;
+    let options =
+        ron::Options::default().with_default_extension(Extensions::UNWRAP_VARIANT_NEWTYPES | Extensions::IMPLICIT_SOME);
+    options.from_str(text)
+}
+
+#[test]
+fn a_technology_is_a_few_words_in_a_scenario() {
+    for (text, expected) in [
+        ("Ieee802154()", TechnologyConfig::default()),
+        (
+            "Wifi(standard: G, rate: 6e6)",
+            TechnologyConfig::Wifi(wifi(WifiStandard::G, 6e6)),
+        ),
+        (
+            "LoRa(spreading: 9, duty_cycle: None)",
+            TechnologyConfig::LoRa(LoRaConfig {
+                duty_cycle: None,
+                ..lora(9)
+            }),
+        ),
+        (
+            "Custom(bit_rate: None, modulation: OQpsk, noise: -100.0, supply: (volts: 3.0))",
+            TechnologyConfig::Custom(CustomConfig {
+                bit_rate: None,
+                modulation: Modulation::OQpsk,
+                noise: Some(Finite::new(-100.0)),
+                supply: Supply::new(3.0, [0.0; 5]),
+                ..CustomConfig::default()
+            }),
+        ),
+        (
+            "Custom(modulation: Threshold(-3.0))",
+            TechnologyConfig::Custom(CustomConfig {
+                modulation: Modulation::Threshold(Finite::new(-3.0)),
+                ..CustomConfig::default()
+            }),
+        ),
+    ] {
+        assert_eq!(read(text).as_ref(), Ok(&expected), "{text}");
+    }
+    for wrong in ["Ieee802154(bandwith: 2e6)", "Kilobot(range: -1.0)", "Zigbee()"] {
+        assert!(read(wrong).is_err(), "{wrong}");
+    }
+}

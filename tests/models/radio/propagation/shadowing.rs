@@ -54,9 +54,8 @@ fn losses_are_normal() {
 /// exp(−(Δa + Δb)/decorrelation). Of n pairs of normal values whose correlation is ρ, the sample correlation has a standard error of (1 − ρ²)/√n.
 #[test]
 fn the_correlation_falls_exponentially_over_the_sum_of_both_ways() {
-    let (a, b) = (Vec2::new(4.0, 4.0), Vec2::new(12.0, -1.0));
-    let here = losses(a, b);
-    for [first, second] in [
+    const FIELDS: u32 = 80_000;
+    const MOVED: [[f64; 2]; 7] = [
         [1.0, 0.0],
         [0.0, 1.0],
         [5.0, 0.0],
@@ -64,17 +63,23 @@ fn the_correlation_falls_exponentially_over_the_sum_of_both_ways() {
         [5.0, 5.0],
         [20.0, 0.0],
         [0.05, 0.05],
-    ] {
-        // In no direction in particular.
-        let there = losses(a + unit(first) * first, b + unit(2.5 * second) * second);
+    ];
+    let (a, b) = (Vec2::new(4.0, 4.0), Vec2::new(12.0, -1.0));
+    let mut here = Vec::new();
+    let mut there: [Vec<f64>; MOVED.len()] = Default::default();
+    for field in 0..FIELDS {
+        let shadowing = shadowing(field);
+        here.push(shadowing.db(a, b));
+        for (losses, [first, second]) in there.iter_mut().zip(MOVED) {
+            // In no direction in particular.
+            losses.push(shadowing.db(a + unit(first) * first, b + unit(2.5 * second) * second));
+        }
+    }
+    for (losses, [first, second]) in there.iter().zip(MOVED) {
         let expected = (-(first + second) / DECORRELATION).exp();
         let error = (1.0 - expected * expected) / f64::from(FIELDS).sqrt();
-        assert_near(
-            &format!("moved by {first} and {second} m"),
-            correlation(&here, &there),
-            expected,
-            error,
-        );
+        let what = format!("moved by {first} and {second} m");
+        assert_near(&what, correlation(&here, losses), expected, error);
     }
 }
 
