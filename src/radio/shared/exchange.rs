@@ -10,7 +10,7 @@ use super::{Shared, link};
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Vec2;
 use crate::radio::draw::FrameCopy;
-use crate::radio::{Account, Fate, Fates, FrameId, LossCause, Outcome, Places};
+use crate::radio::{Fate, Fates, FrameId, LossCause, Outcome, Places};
 
 impl Shared {
     /// `robot` sends the head of its queue on `channel`.

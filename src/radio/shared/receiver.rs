@@ -36,7 +36,7 @@ pub(super) struct Receiver {
     kept: f64,
     phy: Phy,
     /// How its modulations survive.
-    tables: Vec<(Modulation, ErrorTable)>,
+    tables: Tables,
     errors: KeyedStreams,
     acknowledgements: KeyedStreams,
 }
@@ -54,7 +54,7 @@ impl Receiver {
             orthogonal: access.is_orthogonal(),
             latency: access.latency(),
             kept: phy.infrared.map_or(1.0, |infrared| 1.0 - infrared.drop),
-            tables: tables(phy),
+            tables: Tables::of(phy),
             phy: phy.clone(),
             errors: streams.keyed(ERRORS),
             acknowledgements: streams.keyed(ACKNOWLEDGEMENTS),
@@ -188,16 +188,11 @@ impl Receiver {
                 } else {
                     last.since(first).as_nanos() as f64 / section.airtime.as_nanos() as f64
                 };
-                sum += f64::from(section.bits) * share * self.log_survival(section.modulation, sinr);
+                sum += f64::from(section.bits) * share * self.tables.log_survival(section.modulation, sinr);
             }
             begins = ends;
         }
         sum
-    }
-
-    fn log_survival(&self, modulation: Modulation, sinr: f64) -> f64 {
-        let table = self.tables.iter().find(|table| table.0 == modulation);
-        table.map_or(0.0, |table| f64::from(table.1.log_survival(sinr as f32)))
     }
 
     fn draw(&self, burst: &Burst, robot: ActorId) -> f64 {
@@ -215,20 +210,30 @@ impl Receiver {
     }
 }
 
-/// The tables of all that frames and acknowledgements are sent by, and in which bits can go wrong.
-fn tables(phy: &Phy) -> Vec<(Modulation, ErrorTable)> {
-    let mut tables: Vec<(Modulation, ErrorTable)> = Vec::new();
-    let acknowledgement = phy.acknowledgement();
-    let sections = phy
-        .sections(1)
-        .chain(acknowledgement.iter().flat_map(|answer| answer.sections()));
-    for section in sections {
-        let modulation = section.modulation;
-        if modulation != Modulation::None && tables.iter().all(|table| table.0 != modulation) {
-            tables.push((modulation, ErrorTable::new(modulation)));
+/// How the modulations of a technology survive: those of its frames and acknowledgements in which bits can go wrong.
+#[derive(Debug)]
+pub(super) struct Tables(Vec<(Modulation, ErrorTable)>);
+
+impl Tables {
+    pub fn of(phy: &Phy) -> Self {
+        let mut tables: Vec<(Modulation, ErrorTable)> = Vec::new();
+        let acknowledgement = phy.acknowledgement();
+        let sections = phy.sections(1);
+        let sections = sections.chain(acknowledgement.iter().flat_map(Waveform::sections));
+        for section in sections {
+            let modulation = section.modulation;
+            if modulation != Modulation::None && tables.iter().all(|table| table.0 != modulation) {
+                tables.push((modulation, ErrorTable::new(modulation)));
+            }
         }
+        Self(tables)
     }
-    tables
+
+    /// The logarithm of the probability that a bit comes through at a ratio.
+    pub fn log_survival(&self, modulation: Modulation, sinr: f64) -> f64 {
+        let table = self.0.iter().find(|table| table.0 == modulation);
+        table.map_or(0.0, |table| f64::from(table.1.log_survival(sinr as f32)))
+    }
 }
 
 /// The so manieth 64 bits of a stream, from 0.

@@ -88,7 +88,8 @@ fn a_slot_waits_as_tdma() {
         let radio = format!("{IEEE802154}, access: Tdma(slot: {slot:?}, guard: 0.0), queue: 1000");
         let records = everybody(100.0, &traffic, &radio, 20, 8);
         let expected = frame / 2.0 + rate * frame * frame / (2.0 * (1.0 - share)) + AIRTIME_S;
-        measured(&records, mean_latency).agrees(&format!("λF = {share}"), expected, 0.0, 0.0);
+        // The queue is empty at first, and what is still in it at the end is not counted.
+        measured(&records, mean_latency).agrees(&format!("λF = {share}"), expected, 0.0, 0.005 * expected);
         measured(&records, delivery).agrees("nothing is lost", 1.0, 0.0, 0.0);
     }
 }

@@ -11,10 +11,10 @@ use super::{EQUAL_LOSS, EVERYBODY, HIDDEN, Measured, delivery, lost_to, measured
 const IEEE802154: &str = "technology: Ieee802154()";
 const WIFI: &str = "technology: Wifi(standard: B, rate: 1e6)";
 
-/// From a half width of 95 % to a standard error, over 40 and over 20 runs, and over four or five.
+/// From a half width of 95 % to a standard error, over 40 and over 20 runs, and over four.
 const MANY: f64 = 1.0 / 2.02;
 const TWENTY: f64 = 1.0 / 2.09;
-const FEW: f64 = 1.0 / 2.9;
+const FOUR: f64 = 1.0 / 3.18;
 
 fn broadcast(radio: &str, capture: &str, robots: u32, trials: u32) -> Vec<TrialRecord> {
     let radio = format!("{radio}, capture: {capture}, {EQUAL_LOSS}");
@@ -120,7 +120,7 @@ fn saturated_broadcasts_over_wifi() {
         (20, (0.318_298, 0.005_86)),
     ] {
         let records = saturated(WIFI, "Everyone", 20, robots, 6.0);
-        measured(&records, delivery).agrees(&format!("{robots} robots"), strict.0, strict.1 * FEW, 0.0);
+        measured(&records, delivery).agrees(&format!("{robots} robots"), strict.0, strict.1 * FOUR, 0.0);
     }
 }
 
@@ -138,19 +138,20 @@ fn throughput(radio: &str, robots: u32, seconds: f64) -> Measured {
 #[test]
 fn saturated_wifi_to_one_robot() {
     let fast = "technology: Wifi(standard: B, rate: 11e6, acknowledgement_rate: 11e6)";
+    // Goodput in Mb/s and its standard error over runs.
     for (radio, robots, seconds, expected) in [
-        (WIFI, 2, 20.0, (0.858_72, 0.003_25)),
-        (WIFI, 5, 40.0, (0.813_28, 0.002_99)),
-        (WIFI, 10, 60.0, (0.763_36, 0.006_85)),
-        (WIFI, 20, 100.0, (0.706_64, 0.007_69)),
-        (fast, 2, 5.0, (5.6262, 0.0215)),
-        (fast, 5, 10.0, (5.6776, 0.0125)),
-        (fast, 10, 20.0, (5.4746, 0.0232)),
-        (fast, 20, 30.0, (5.2456, 0.0254)),
+        (WIFI, 2, 20.0, (0.8587, 0.001_17)),
+        (WIFI, 5, 40.0, (0.8133, 0.001_08)),
+        (WIFI, 10, 60.0, (0.7634, 0.002_46)),
+        (WIFI, 20, 100.0, (0.7066, 0.003_29)),
+        (fast, 2, 5.0, (5.6262, 0.007_74)),
+        (fast, 5, 10.0, (5.6776, 0.004_51)),
+        (fast, 10, 20.0, (5.4746, 0.008_33)),
+        (fast, 20, 30.0, (5.2456, 0.009_14)),
     ] {
         let what = format!("{robots} robots, {radio}");
-        throughput(radio, robots, seconds).agrees(&what, expected.0, expected.1 * FEW, 0.0);
+        throughput(radio, robots, seconds).agrees(&what, expected.0, expected.1, 0.0);
     }
     let g6 = "technology: Wifi(standard: G, rate: 6e6), access: Dcf(slot: 20e-6, window: (15, 1023))";
-    throughput(g6, 10, 20.0).agrees("802.11g", 4.092, 0.037 * FEW, 0.0);
+    throughput(g6, 10, 20.0).agrees("802.11g", 4.092, 0.037 * FOUR, 0.0);
 }

@@ -222,6 +222,17 @@ impl AccessConfig {
     pub fn problems(&self, robots: u32) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let mut problem = |field: &str, message: String| found.push((field.to_owned(), message));
+        let slot = match self {
+            Self::SlottedAloha { slot, .. } | Self::Tdma { slot, .. } => Some(slot.get()),
+            Self::Dcf(config) => config.slot.map(Positive::get),
+            _ => None,
+        };
+        if let Some(slot) = slot.filter(|slot| *slot < SHORTEST_SLOT_S) {
+            problem(
+                "slot",
+                format!("a slot of {slot} s is too short: expected at least {SHORTEST_SLOT_S} s"),
+            );
+        }
         match self {
             Self::None | Self::Paced(_) => {}
             Self::Aloha { duty_cycle } => {
@@ -376,6 +387,9 @@ impl AccessConfig {
 const SHORT_PAYLOAD: u32 = 7;
 
 const DCF_LATENCY_S: f64 = 4e-6;
+
+/// Below this slots are no time that a clock keeps.
+const SHORTEST_SLOT_S: f64 = 1e-7;
 
 impl DcfConfig {
     fn timing(&self, technology: &TechnologyConfig, phy: &Phy) -> dcf::Timing {
