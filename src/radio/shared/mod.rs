@@ -14,6 +14,7 @@
 
 mod access;
 mod agenda;
+mod build;
 mod burst;
 mod config;
 mod ear;

@@ -4,7 +4,6 @@
 //! interference and noise is constant, so the probability that all bits are right is a product over these chunks; one keyed number decides. The better the
 //! ratio the greater is that probability, and what survives in worse conditions survives in better ones.
 
-use super::access::AccessConfig;
 use super::burst::{Burst, Content};
 use super::ear::{Ear, Heard};
 use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
@@ -42,8 +41,9 @@ pub(super) struct Receiver {
 }
 
 impl Receiver {
-    /// Those of `phy`, with so much noise beside their own, for robots that get at the medium by `access`.
-    pub fn new(phy: &Phy, access: &AccessConfig, background: f64, streams: &Streams) -> Self {
+    /// Those of `phy`, with so much noise beside their own. `orthogonal`: whether frames do not disturb each other; `latency`: how long one must have been on air
+    /// before it is noticed.
+    pub fn new(phy: &Phy, orthogonal: bool, latency: Span, background: f64, streams: &Streams) -> Self {
         Self {
             noise: milliwatts(phy.noise) + background,
             sensitivity: milliwatts(phy.sensitivity),
@@ -51,8 +51,8 @@ impl Receiver {
             carrier: phy.carrier.or(phy.assess).map(milliwatts),
             lock: ratio(phy.lock),
             capture: phy.capture.map(ratio),
-            orthogonal: access.is_orthogonal(),
-            latency: access.latency(),
+            orthogonal,
+            latency,
             kept: phy.infrared.map_or(1.0, |infrared| 1.0 - infrared.drop),
             tables: Tables::of(phy),
             phy: phy.clone(),

@@ -120,3 +120,56 @@ fn ble_advertising() {
         measured(&records, delivery).agrees(&format!("{robots} robots"), clean * awake, 0.0, 0.01);
     }
 }
+
+/// Bianchi's τ and p for n saturated robots that send a frame at most seven times, with windows of 32 to 1024 slots.
+fn bianchi(robots: i32) -> (f64, f64) {
+    let tau = |p: f64| {
+        let attempts = (0..7).map(|attempt| p.powi(attempt)).sum::<f64>();
+        let slots = (0..7).map(|attempt| p.powi(attempt) * ((32.0 * f64::from(1 << attempt.min(5)) - 1.0) / 2.0 + 1.0));
+        attempts / slots.sum::<f64>()
+    };
+    let [mut low, mut high] = [0.0, 1.0 - 1e-9];
+    for _ in 0..100 {
+        let p = f64::midpoint(low, high);
+        if p < 1.0 - (1.0 - tau(p)).powi(robots - 1) {
+            low = p;
+        } else {
+            high = p;
+        }
+    }
+    (tau(low), low)
+}
+
+/// Saturation throughput of DCF (Bianchi, 2000), within 3 %: all slots in step, nobody waits out a timeout.
+#[test]
+fn saturated_dcf() {
+    let [slot, sifs, difs] = [20e-6, 10e-6, 50e-6];
+    for (rate, frame, answer, cases) in [
+        (1e6, 8480e-6, 304e-6, [(5, 30.0), (20, 60.0), (50, 90.0)]),
+        (11e6, 946e-6, 203e-6, [(5, 5.0), (20, 15.0), (50, 20.0)]),
+    ] {
+        for (robots, seconds) in cases {
+            let (tau, _) = bianchi(robots);
+            let transmits = 1.0 - (1.0 - tau).powi(robots);
+            let succeeds = f64::from(robots) * tau * (1.0 - tau).powi(robots - 1);
+            let time = (1.0 - transmits) * slot
+                + succeeds * (frame + sifs + answer + difs)
+                + (transmits - succeeds) * (frame + difs);
+            let expected = succeeds * 8000.0 / time;
+            let radio =
+                format!("technology: Wifi(standard: B, rate: {rate:?}, acknowledgement_rate: {rate:?}), capture: inf");
+            let records = everybody(
+                seconds,
+                "when: Saturated, payload: 1000, to: Next",
+                &radio,
+                robots as u32,
+                4,
+            );
+            let goodput = |record: &TrialRecord| {
+                let received: u64 = record.traffic.iter().map(|row| row.received.payload_bytes).sum();
+                8.0 * received as f64 / record.simulated.as_secs()
+            };
+            measured(&records, goodput).agrees(&format!("{robots} robots at {rate}"), expected, 0.0, 0.03 * expected);
+        }
+    }
+}

@@ -5,6 +5,7 @@
 //! acknowledgements.
 
 mod aloha;
+mod build;
 mod config;
 mod csma_ca;
 mod dcf;
