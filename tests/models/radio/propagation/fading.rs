@@ -126,6 +126,7 @@ fn fades_come_as_often_and_last_as_long_as_theory_says() {
         (rician(4.0), [0.0, 20.0], 1.0),
         (nakagami(2.0), [12.0, 16.0], 0.3),
         (nakagami(1.5), [16.0, 12.0], 0.5),
+        (nakagami(0.5), [12.0, 16.0], 0.5),
     ] {
         let rate = match config {
             FadingConfig::Rician { k, .. } => {
