@@ -41,7 +41,12 @@ fn frames_are_counted_by_how_they_ended_and_wait_only_if_they_went_on_air() {
         None,
         0,
     ));
-    air.concluded(&concluded(Outcome::Dropped(LossCause::SenderDown), [30, 31], Some(33), 1));
+    air.concluded(&concluded(
+        Outcome::Dropped(LossCause::SenderDown),
+        [30, 31],
+        Some(33),
+        1,
+    ));
     let record = air.into_record();
     let robot = &record.robots[1];
     assert_eq!(
@@ -67,7 +72,10 @@ fn frames_are_counted_by_how_they_ended_and_wait_only_if_they_went_on_air() {
     };
     assert_eq!(robot.queue_wait, waits(4, 0, 3), "3, 0 and 1");
     assert_eq!(robot.access_delay, waits(8, 2, 4), "2, 4 and 2");
-    assert_eq!((record.queue_wait.count(), record.queue_wait.max()), (3, Some(millis(3))));
+    assert_eq!(
+        (record.queue_wait.count(), record.queue_wait.max()),
+        (3, Some(millis(3)))
+    );
     assert_eq!(
         (record.access_delay.min(), record.access_delay.max()),
         (Some(millis(2)), Some(millis(4)))
@@ -106,7 +114,14 @@ fn copies_are_counted_at_their_receiver_by_distance_and_by_link() {
     let links: Vec<_> = record
         .links
         .iter()
-        .map(|link| (link.sender.0, link.receiver.0, link.copies.offered, link.copies.power_dbm))
+        .map(|link| {
+            (
+                link.sender.0,
+                link.receiver.0,
+                link.copies.offered,
+                link.copies.power_dbm,
+            )
+        })
         .collect();
     assert_eq!(links, [(0, 1, 3, Some(-65.0)), (2, 1, 1, Some(-80.0))]);
     let mean = (1.0 + f64::from(1.1_f32) + 3.0) / 3.0;

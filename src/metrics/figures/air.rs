@@ -36,9 +36,11 @@ fn declare(registry: &mut Registry) {
     let share = (DIMENSIONLESS, Better::Lower, Estimator::Fraction);
     let shares: [(&str, &str, fn(&RobotAir) -> Span); 2] = [
         ("radio.airtime_share", "time that a robot sends", |robot| robot.sent),
-        ("radio.busy_share", "time that a robot finds the channel busy", |robot| {
-            robot.busy
-        }),
+        (
+            "radio.busy_share",
+            "time that a robot finds the channel busy",
+            |robot| robot.busy,
+        ),
     ];
     for (key, name, time) in shares {
         registry.add_plain(key, name, share, move |record| share_of_time(record, time));
@@ -68,10 +70,7 @@ fn declare(registry: &mut Registry) {
         unacknowledged,
     );
     registry.add_ratio("radio.dropped", "frames that never went on air", lost, |record| {
-        [
-            sum(record, RobotAir::never_sent),
-            sum(record, |robot| robot.frames),
-        ]
+        [sum(record, RobotAir::never_sent), sum(record, |robot| robot.frames)]
     });
     let energy = ("J", Better::Lower, Estimator::Mean);
     registry.add_plain("radio.energy_J", "energy of a robot's radio", energy, energy_j);
@@ -97,10 +96,7 @@ fn goodput_bps(record: &TrialRecord) -> Option<f64> {
 /// Mean over robots.
 fn share_of_time(record: &TrialRecord, time: fn(&RobotAir) -> Span) -> Option<f64> {
     let all = record.simulated.as_secs();
-    let shares: Vec<f64> = robots(record)
-        .iter()
-        .map(|robot| time(robot).as_secs() / all)
-        .collect();
+    let shares: Vec<f64> = robots(record).iter().map(|robot| time(robot).as_secs() / all).collect();
     (all > 0.0).then(|| mean(&shares).value).flatten()
 }
 
@@ -120,7 +116,10 @@ fn unacknowledged(record: &TrialRecord) -> Part {
 /// Mean over robots; none where the radio does not account for energy.
 fn energy_j(record: &TrialRecord) -> Option<f64> {
     let each: Vec<f64> = robots(record).iter().map(|robot| robot.energy.iter().sum()).collect();
-    each.iter().any(|energy| *energy > 0.0).then(|| mean(&each).value).flatten()
+    each.iter()
+        .any(|energy| *energy > 0.0)
+        .then(|| mean(&each).value)
+        .flatten()
 }
 
 /// Mean over the copies that were understood.

@@ -325,7 +325,8 @@ impl Recorder {
 
     /// The book of what the radio tells.
     fn air(&mut self) -> &mut Air {
-        self.air.get_or_insert_with(|| Box::new(Air::new(self.robots, self.links)))
+        self.air
+            .get_or_insert_with(|| Box::new(Air::new(self.robots, self.links)))
     }
 
     /// Closes the books.
