@@ -16,6 +16,9 @@ pub struct MetricsConfig {
     /// Whether to keep what passed between every two robots, for `pairs.parquet` and the figures `pairs.…`. It costs time and memory.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub pairs: bool,
+    /// Whether to keep what became of copies on every link, for `links.parquet`, over a radio on which frames take time. It costs memory.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub links: bool,
     /// The older way to say `completion: Held(seconds)`, which belongs to the protocol.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "NonNegative")]
@@ -28,6 +31,7 @@ impl Default for MetricsConfig {
             sample_interval: NonNegative::new(1.0),
             series_every: 1,
             pairs: false,
+            links: false,
             hold: None,
         }
     }

@@ -1,5 +1,6 @@
 //! What a run leaves behind: traffic, fates, connectivity, outcome, and the statistics over trials.
 
+mod air;
 pub mod comparison;
 mod completion;
 mod config;
@@ -25,6 +26,7 @@ mod unit;
 mod volume;
 
 pub use crate::statistics::Estimate;
+pub use air::{AirRecord, Copies, DistanceBand, ENERGY_STATES, LinkRecord, RobotAir, Waits};
 pub use completion::Progress;
 pub use config::MetricsConfig;
 pub use connectivity::{Chains, Graph};

@@ -7,6 +7,7 @@ use crate::geometry::{Pose, Vec2};
 use crate::radio::{Placed, Reach};
 use crate::spool::{Entry, Spool, Spooled, entry};
 
+use super::air::AirRecord;
 use super::detection::{DetectionRecord, ObservedFailure, StatusTrace, Suspicion};
 use super::episode::{FaultEpisode, HealingEpisode};
 use super::latency::LatencyHistogram;
@@ -54,6 +55,9 @@ pub struct TrialRecord {
     /// What passed from each robot to each, by sender and receiver, where the scenario asks for it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<PairRecord>,
+    /// What radios did, over a radio that keeps accounts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub air: Option<AirRecord>,
     /// Connectivity at each sample time.
     pub connectivity: Spool<ConnectivitySample>,
     /// Traffic over time, in order of time.

@@ -1,7 +1,7 @@
 //! The figures that have no words of their own.
 
 use super::layout::Page;
-use super::number::{estimate, figure};
+use super::number::{estimate, signed};
 use crate::metrics::Summary;
 
 /// A name and a value of each: the estimate with its interval, its unit, what is known of what was cut off, and how many trials tell of it, if
@@ -36,15 +36,6 @@ pub fn section(page: &mut Page, summary: &Summary) {
     page.heading("Further figures");
     for (name, words) in rows {
         page.item(&format!("{name}: {words}"));
-    }
-}
-
-/// What robots measure may be below 0.
-fn signed(value: f64) -> String {
-    if value < 0.0 {
-        format!("\u{2212}{}", figure(-value))
-    } else {
-        figure(value)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Finished results as text for people.
 
+mod air;
 mod comparison;
 mod explanation;
 mod failures;

@@ -32,6 +32,15 @@ pub fn figure(value: f64) -> String {
     }
 }
 
+/// A figure that may be negative: what robots measure, a power.
+pub fn signed(value: f64) -> String {
+    if value < 0.0 {
+        format!("\u{2212}{}", figure(-value))
+    } else {
+        figure(value)
+    }
+}
+
 /// A figure that may be missing.
 pub fn maybe(value: Option<f64>) -> String {
     value.map_or_else(|| NOTHING.to_owned(), figure)

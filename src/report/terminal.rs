@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::air;
 use super::failures;
 use super::further;
 use super::grid::Grid;
@@ -61,6 +62,7 @@ pub fn terminal(input: &Input) -> String {
     spread::section(&mut page, input.summary);
     bandwidth(&mut page, input.summary);
     radio(&mut page, input.summary);
+    air::section(&mut page, input.summary);
     connectivity(&mut page, input.summary);
     detection(&mut page, input);
     further::section(&mut page, input.summary);
@@ -217,7 +219,8 @@ fn radio(page: &mut Page, summary: &Summary) {
         .lost
         .0
         .iter()
-        .filter(|(_, frames)| *frames > 0)
+        // Where there are many, they have their own lines.
+        .filter(|(_, frames)| *frames > 0 && summary.radio.is_none())
         .map(|(cause, frames)| format!("{} {}", cause.replace('_', " "), count(*frames)))
         .collect();
     let causes = if causes.is_empty() {

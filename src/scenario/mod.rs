@@ -163,10 +163,15 @@ impl Scenario {
         self.protocol.topics(&self.detector)
     }
 
-    /// The figures of its trials: those of all protocols, and its protocol's own.
+    /// The figures of its trials: those of all protocols, those of its radio, and its protocol's own.
     #[must_use]
     pub fn figures(&self) -> Registry {
-        Registry::of(self.protocol.all_topics()).noting(&self.protocol.figures())
+        let all = Registry::of(self.protocol.all_topics());
+        let all = match self.radio.shared() {
+            Some(_) => all.sharing_air(),
+            None => all,
+        };
+        all.noting(&self.protocol.figures())
     }
 
     /// Whether robots run the failure detector that it sets.

@@ -2,7 +2,7 @@
 
 use super::records::Records;
 use super::table::{Table, Wrong};
-use super::{failures, swarm, traffic, trials};
+use super::{air, failures, swarm, traffic, trials};
 
 /// How a table's rows are put into the records.
 pub type Fill = fn(&mut Records, &Table) -> Result<(), Wrong>;
@@ -23,4 +23,11 @@ pub const TABLES: [(&str, Fill); 11] = [
 ];
 
 /// Tables that are there only where there is something to put into them.
-pub const OPTIONAL: [(&str, Fill); 2] = [("notes.parquet", traffic::notes), ("pairs.parquet", traffic::pairs)];
+pub const OPTIONAL: [(&str, Fill); 6] = [
+    ("notes.parquet", traffic::notes),
+    ("pairs.parquet", traffic::pairs),
+    ("radio.parquet", air::robots),
+    ("waits.parquet", air::waits),
+    ("distance.parquet", air::bands),
+    ("links.parquet", air::links),
+];

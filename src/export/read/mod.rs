@@ -1,6 +1,7 @@
 //! A results folder read back: verified file by file against its manifest, its tables turned into the records that they
 //! were written from.
 
+mod air;
 mod failures;
 mod fill;
 mod records;
@@ -20,18 +21,21 @@ use records::Records;
 use table::{Table, Wrong};
 
 /// Names of the tables that are read.
-pub const READ: [&str; TABLES.len()] = {
-    let mut names = [""; TABLES.len()];
+pub const READ: [&str; TABLES.len()] = names(&TABLES);
+
+/// Names of the tables that are read where they are there.
+pub const OPTIONAL: [&str; MAYBE.len()] = names(&MAYBE);
+
+/// The names of so many tables.
+const fn names<const N: usize>(tables: &[(&'static str, Fill); N]) -> [&'static str; N] {
+    let mut names = [""; N];
     let mut table = 0;
-    while table < TABLES.len() {
-        names[table] = TABLES[table].0;
+    while table < N {
+        names[table] = tables[table].0;
         table += 1;
     }
     names
-};
-
-/// Names of the tables that are read where they are there.
-pub const OPTIONAL: [&str; MAYBE.len()] = [MAYBE[0].0, MAYBE[1].0];
+}
 
 /// The records that `files`, the tables of [`READ`] and [`OPTIONAL`] by name, were written from, but for their paths and the
 /// numbers of the frames that suspicions began with, which no report needs.

@@ -47,6 +47,7 @@ pub fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             spread: Vec::new(),
             noted: Vec::new(),
             pairs: Vec::new(),
+            air: None,
             connectivity: Spool::default(),
             series: Spool::default(),
             robots: Vec::new(),

@@ -1,5 +1,6 @@
 //! The tables of a results folder, filled a trial at a time, in order of trials.
 
+mod air;
 mod bandwidth;
 mod connectivity;
 mod detection;
@@ -39,6 +40,10 @@ pub struct Tables {
     series: Table<series::Row>,
     notes: Later<notes::Row>,
     pairs: Later<pairs::Row>,
+    radio: Later<air::Robot>,
+    waits: Later<air::Bucket>,
+    distance: Later<air::Band>,
+    links: Later<air::Link>,
 }
 
 impl Tables {
@@ -58,7 +63,14 @@ impl Tables {
         "spread.parquet",
     ];
     /// Names of the files that are there only where there is something to put into them.
-    pub const OPTIONAL: [&str; 2] = ["notes.parquet", "pairs.parquet"];
+    pub const OPTIONAL: [&str; 6] = [
+        "notes.parquet",
+        "pairs.parquet",
+        "radio.parquet",
+        "waits.parquet",
+        "distance.parquet",
+        "links.parquet",
+    ];
 
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
     ///
@@ -82,6 +94,10 @@ impl Tables {
             series: Table::create(&path(10), series::columns())?,
             notes: Later::new(dir, Self::OPTIONAL[0], notes::columns),
             pairs: Later::new(dir, Self::OPTIONAL[1], pairs::columns),
+            radio: Later::new(dir, Self::OPTIONAL[2], air::robot_columns),
+            waits: Later::new(dir, Self::OPTIONAL[3], air::wait_columns),
+            distance: Later::new(dir, Self::OPTIONAL[4], air::band_columns),
+            links: Later::new(dir, Self::OPTIONAL[5], air::link_columns),
         })
     }
 
@@ -103,7 +119,11 @@ impl Tables {
         self.spread.extend(spread::rows(record))?;
         self.series.extend(series::rows(record, &self.names))?;
         self.notes.extend(notes::rows(record))?;
-        self.pairs.extend(pairs::rows(record))
+        self.pairs.extend(pairs::rows(record))?;
+        self.radio.extend(air::robots(record))?;
+        self.waits.extend(air::waits(record))?;
+        self.distance.extend(air::bands(record))?;
+        self.links.extend(air::links(record))
     }
 
     /// Ends every file, and answers the names of those that there are.
@@ -123,7 +143,14 @@ impl Tables {
         self.healing.finish()?;
         self.spread.finish()?;
         self.series.finish()?;
-        let later = [self.notes.finish()?, self.pairs.finish()?];
+        let later = [
+            self.notes.finish()?,
+            self.pairs.finish()?,
+            self.radio.finish()?,
+            self.waits.finish()?,
+            self.distance.finish()?,
+            self.links.finish()?,
+        ];
         Ok(Self::FILES.into_iter().chain(later.into_iter().flatten()).collect())
     }
 }

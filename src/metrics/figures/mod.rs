@@ -6,6 +6,7 @@
 //! have on its own, such as the time between mistakes, what it counts over what it watched; of times that may be cut off, the sum of
 //! their pseudo-values over their number. So all are estimated and tested alike, and no trial is left out.
 
+mod air;
 mod bandwidth;
 mod catalogue;
 mod connectivity;

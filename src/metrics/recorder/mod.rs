@@ -14,6 +14,7 @@ use crate::spool::{Scratch, Spool};
 
 use closing::{ledger, robots};
 
+use super::air::Air;
 use super::completion::{Hearing, Judge, Progress};
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
@@ -102,6 +103,10 @@ pub struct Recorder {
     spread: Spread,
     notes: Notes,
     pairs: Option<Pairs>,
+    /// Begun when the radio tells something.
+    air: Option<Box<Air>>,
+    robots: usize,
+    links: bool,
     /// How far the rumours have come, if there are any.
     everyone_knows: Option<Hearing>,
     connectivity: Spool<ConnectivitySample>,
@@ -148,6 +153,9 @@ impl Recorder {
                 .map(|mission| Judge::new(mission, completion, control_period)),
             spread: Spread::new(layout.rumors, layout.robots),
             notes: Notes::default(),
+            air: None,
+            robots: layout.robots,
+            links: config.links,
             pairs: config.pairs.then(|| Pairs::new(layout.robots, layout.status)),
             everyone_knows: (rumors > 0).then(|| Hearing::new(rumors, completion, control_period)),
             connectivity: Spool::new(&scratch),
@@ -315,6 +323,12 @@ impl Recorder {
         judge.observe(step, scene)
     }
 
+    /// The book of what the radio tells.
+    fn air(&mut self) -> &mut Air {
+        self.air
+            .get_or_insert_with(|| Box::new(Air::new(self.robots, self.links)))
+    }
+
     /// Closes the books.
     ///
     /// # Panics
@@ -354,6 +368,7 @@ impl Recorder {
             spread: self.spread.into_records(),
             noted: self.notes.into_records(),
             pairs: self.pairs.map_or_else(Vec::new, Pairs::into_records),
+            air: self.air.map(|air| air.into_record()),
             connectivity: self.connectivity,
             series: self.series.into_entries(),
             robots: robots(self.reports, end.poses, &end.robot_steps),

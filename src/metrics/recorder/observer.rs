@@ -7,7 +7,7 @@ use crate::happenings::{Copy, Inbox, Observer, Sent};
 use crate::metrics::completion::Progress;
 use crate::motion::World;
 use crate::protocol::{Note, Topic};
-use crate::radio::LossCause;
+use crate::radio::{Account, Conclusion, FrameId, LossCause, Reading};
 
 use super::Recorder;
 
@@ -64,6 +64,18 @@ impl Observer for Recorder {
         if let Some(pairs) = &mut self.pairs {
             pairs.in_flight(*copy);
         }
+    }
+
+    fn concluded(&mut self, conclusion: &Conclusion) {
+        self.air().concluded(conclusion);
+    }
+
+    fn measured(&mut self, _: SimTime, frame: FrameId, reading: &Reading) {
+        self.air().measured(frame.sender, reading);
+    }
+
+    fn accounted(&mut self, robot: ActorId, account: &Account) {
+        self.air().accounted(robot, account);
     }
 
     fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {

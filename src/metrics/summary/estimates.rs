@@ -14,6 +14,11 @@ impl Figures<'_> {
         self.0.iter().find(|estimated| estimated.figure.key == key)
     }
 
+    /// Whether there is such a figure.
+    pub fn has(&self, key: &str) -> bool {
+        self.find(key).is_some()
+    }
+
     pub fn estimate(&self, key: &str) -> Estimate {
         self.find(key).map(|found| found.estimate).unwrap_or_default()
     }

@@ -2,6 +2,7 @@
 //!
 //! Everything here follows from the records alone and depends on no machine. Keys and their order are stable.
 
+mod air;
 mod bandwidth;
 mod detection;
 mod estimates;
@@ -15,6 +16,7 @@ mod trials;
 
 pub use super::figures::{detection_times, mistake_durations};
 pub use super::unit::Unit;
+pub use air::{Delay, RadioSummary, Sending, Wait};
 pub use bandwidth::{Bandwidth, Directions, LoadImbalance, Spread, TopicBandwidth};
 pub use detection::{Detection, Failures, Suspicions};
 pub use faults::{FaultSummary, Healed, HealingSummary, HealingTime};
@@ -62,6 +64,12 @@ pub struct Summary {
     pub delivery_ratio: Measured,
     /// Latency of copies, whether they arrived before the end or were under way.
     pub latency_s: Latency,
+    /// Payload that arrived at all robots together, over a radio on which frames take time; else absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goodput_bps: Option<Measured>,
+    /// What radios did, over one on which frames take time; else absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radio: Option<RadioSummary>,
     /// Bytes that robots send and receive.
     pub bandwidth: Bandwidth,
     /// How evenly robots share the load.
@@ -156,6 +164,7 @@ impl Summary {
             records,
             failed,
             beliefs,
+            radios,
         } = trials;
         let lambda2_min = LeastConnectivity::least(registry, &samples);
         let figures = &Figures(registry.estimate(samples));
@@ -175,6 +184,10 @@ impl Summary {
             frames: Frames::of(topics, records),
             delivery_ratio: figures.measured("delivery_ratio", DIMENSIONLESS),
             latency_s: Latency::of(figures, records),
+            goodput_bps: figures
+                .has("goodput_bps")
+                .then(|| figures.measured("goodput_bps", "bit/s")),
+            radio: RadioSummary::of(figures, &radios),
             bandwidth: Bandwidth::of(topics, roles, records),
             load_imbalance: LoadImbalance::of(figures),
             lambda2_min: LeastConnectivity {

@@ -4,6 +4,7 @@ use crate::metrics::figures::{Registry, Sample};
 use crate::metrics::record::{Lists, TrialRecord};
 
 use super::Summary;
+use super::air::Radios;
 use super::detection::Beliefs;
 use super::missed::FailedTrial;
 
@@ -16,6 +17,7 @@ pub struct Trials<'a> {
     pub(super) records: Vec<TrialRecord>,
     pub(super) failed: Vec<FailedTrial>,
     pub(super) beliefs: Beliefs,
+    pub(super) radios: Radios,
 }
 
 impl<'a> Trials<'a> {
@@ -28,6 +30,7 @@ impl<'a> Trials<'a> {
             records: Vec::new(),
             failed: Vec::new(),
             beliefs: Beliefs::default(),
+            radios: Radios::default(),
         }
     }
 
@@ -38,8 +41,10 @@ impl<'a> Trials<'a> {
         }
         self.failed.extend(FailedTrial::of(&record));
         self.beliefs.count(&record.detection);
+        self.radios.count(&record);
         record.exchange(&mut Lists::default());
         record.pairs = Vec::new();
+        record.air = None;
         self.records.push(record);
     }
 

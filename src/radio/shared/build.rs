@@ -105,8 +105,8 @@ impl SharedConfig {
         let site = RadioSite::open(Streams::new(0, 0), 1);
         let mut mean = self.clone();
         mean.shadowing = None;
-        mean.transmit_power_spread = none();
-        mean.antenna_gain_spread = none();
+        mean.transmit_power_spread = NonNegative::new(0.0);
+        mean.antenna_gain_spread = NonNegative::new(0.0);
         let range = Links::farthest(&mean.budget(&phy, &site));
         let access = self.access().scheme(&self.technology, &phy, 1, 0.0).least_delay();
         let latency = access + phy.airtime(self.range_payload.into());

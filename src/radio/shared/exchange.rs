@@ -200,7 +200,10 @@ impl Shared {
             let receiver = open.receiver;
             let towards = burst.position - places.position(receiver, now);
             open.distance = towards.norm() as f32;
-            if let Some(heard) = self.ears[receiver.index()].of(id) {
+            // Light has no powers here: it is there, or it is not.
+            if self.budget.infrared.is_none()
+                && let Some(heard) = self.ears[receiver.index()].of(id)
+            {
                 open.power = dbm(heard.power) as f32;
             }
             if let Err(why) = self.verdict(id, burst, receiver) {

@@ -21,8 +21,9 @@ pub const DIRECTIONS: [&str; 2] = ["#0072b2", "#d55e00"];
 const TOPICS: [&str; 7] = [
     "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c510a",
 ];
-const CAUSES: [&str; 7] = [
-    "#b2182b", "#ef8a62", "#7b3294", "#999999", "#c2a5cf", "#4d4d4d", "#d9b38c",
+const CAUSES: [&str; 12] = [
+    "#b2182b", "#ef8a62", "#7b3294", "#999999", "#c2a5cf", "#4d4d4d", "#d9b38c", "#1b7837", "#80cdc1", "#4393c3",
+    "#fdb863", "#35978f",
 ];
 
 /// The colour of topic number `topic`.

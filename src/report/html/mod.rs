@@ -5,6 +5,7 @@
 //! [`Comparison`](crate::metrics::comparison::Comparison), to a `Figure`, or to none where the results have nothing to
 //! show. The pages ([`page()`], [`study_page`]) only put them in order. The same results give the same bytes.
 
+mod air;
 mod bandwidth;
 mod chart;
 mod connectivity;

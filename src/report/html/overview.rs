@@ -5,7 +5,7 @@ use super::detection;
 use crate::metrics::summary::Spread;
 use crate::predict;
 use crate::report::number::{self, count, estimate, figure, percent, seconds};
-use crate::report::{further, surprises};
+use crate::report::{air, further, surprises};
 
 /// What was found, a name and a value each.
 pub fn rows(input: &PageInput) -> Vec<(String, String)> {
@@ -66,6 +66,8 @@ pub fn rows(input: &PageInput) -> Vec<(String, String)> {
         rows.push(("duplicates in the messages delivered", share));
     }
     let mut rows: Vec<(String, String)> = rows.into_iter().map(|(name, words)| (name.to_owned(), words)).collect();
+    let of_air = air::rows(summary).into_iter();
+    rows.extend(of_air.map(|(name, words)| (format!("air: {name}"), words)));
     rows.extend(further::rows(summary));
     let surprises = predict::surprises(input.scenario, summary);
     for (together, why) in surprises::by_reason(&surprises) {

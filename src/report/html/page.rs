@@ -6,7 +6,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plotly::Plot;
 
 use super::figure::Figure;
-use super::{PageInput, bandwidth, connectivity, detection, gossip, map, mission, overview, radio, robots, series};
+use super::{
+    PageInput, air, bandwidth, connectivity, detection, gossip, map, mission, overview, radio, robots, series,
+};
 use crate::report::number::{count, seconds};
 use crate::scenario::to_ron;
 use crate::text::{clean, clean_lines};
@@ -98,7 +100,7 @@ fn chart_script() -> String {
 }
 
 fn sections(input: &PageInput) -> Vec<Section> {
-    let all: [(&str, &str, Vec<Option<Figure>>); 6] = [
+    let all: [(&str, &str, Vec<Option<Figure>>); 7] = [
         (
             "mission",
             "Mission",
@@ -127,6 +129,7 @@ fn sections(input: &PageInput) -> Vec<Section> {
                 gossip::duplicates(input),
             ],
         ),
+        ("air", "Air", vec![air::by_distance(input), air::causes(input)]),
         (
             "graph",
             "Connectivity",

@@ -11,14 +11,25 @@ use super::figure::{Figure, Panel};
 use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::LatencyHistogram;
+use crate::metrics::summary::Fates;
 use crate::report::number;
 
 /// Copies lost, by topic and cause.
 pub fn lost(input: &PageInput) -> Figure {
     let frames = &input.summary.frames;
-    let causes: Vec<&str> = frames.total.lost.0.iter().map(|(cause, _)| cause.as_str()).collect();
+    // A cause that took nothing has no place, neither in the table nor in the legend.
+    let causes = frames.total.lost.0.iter().enumerate();
+    let causes: Vec<(usize, &str)> = causes
+        .filter(|(_, (_, lost))| *lost > 0)
+        .map(|(number, (cause, _))| (number, cause.as_str()))
+        .collect();
+    let of_cause = |fates: &Fates, cause: usize| fates.lost.0.get(cause).map_or(0, |(_, frames)| *frames);
     let mut head: Vec<String> = ["topic", "offered", "delivered", "in flight"].map(str::to_owned).into();
-    head.extend(causes.iter().map(|cause| format!("lost: {}", cause.replace('_', " "))));
+    head.extend(
+        causes
+            .iter()
+            .map(|(_, cause)| format!("lost: {}", cause.replace('_', " "))),
+    );
     let mut table = DataTable { head, rows: Vec::new() };
     let topics = frames.by_topic.0.iter().map(|(name, fates)| (name.as_str(), fates));
     let rows: Vec<_> = topics.chain([("all topics", &frames.total)]).collect();
@@ -29,20 +40,15 @@ pub fn lost(input: &PageInput) -> Figure {
             fates.delivered.into(),
             fates.in_flight.into(),
         ];
-        row.extend(fates.lost.0.iter().map(|(_, frames)| Cell::from(*frames)));
+        row.extend(causes.iter().map(|(cause, _)| Cell::from(of_cause(fates, *cause))));
         table.rows.push(row);
     }
     let readable: Vec<String> = rows.iter().map(|(name, _)| name.replace('_', " ")).collect();
     let names = Names::of(readable.iter().map(String::as_str));
     let mut plot = stacked(axis("share of copies offered").tick_suffix(" %"), names.down());
-    // A cause that took nothing has no place in the legend.
-    let took = |cause: usize| frames.total.lost.0.get(cause).is_some_and(|(_, lost)| *lost > 0);
-    let any = (0..causes.len()).any(took);
-    for (cause, name) in causes.iter().enumerate().filter(|(cause, _)| took(*cause)) {
-        let share = |(_, fates): &(&str, &crate::metrics::summary::Fates)| {
-            let lost = fates.lost.0.get(cause).map_or(0, |(_, frames)| *frames);
-            shown(100.0 * lost as f64 / fates.offered.max(1) as f64)
-        };
+    for &(cause, name) in &causes {
+        let share =
+            |(_, fates): &(&str, &Fates)| shown(100.0 * of_cause(fates, cause) as f64 / fates.offered.max(1) as f64);
         let bars = Bar::new(rows.iter().map(share).collect(), names.all())
             .name(words(name))
             .orientation(Orientation::Horizontal)
@@ -61,7 +67,7 @@ pub fn lost(input: &PageInput) -> Figure {
             number::count(total),
             number::count(frames.total.offered)
         ),
-        panels: vec![if any {
+        panels: vec![if total > 0 {
             Panel::of_rows("", plot, rows.len())
         } else {
             Panel::words("", "No copy was lost.")

@@ -40,6 +40,8 @@ const TRIAL: f64 = 80_000.0;
 const KEPT: f64 = 0.3;
 /// Of what passed between two robots.
 const BETWEEN: f64 = 6500.0;
+/// Of what became of copies on a link.
+const LINK: f64 = 600.0;
 
 /// What a scenario asks of a machine.
 struct Needs {
@@ -132,6 +134,13 @@ impl Needs {
                 field: "metrics.pairs",
                 also: &["swarm.robots", "radio.range"],
                 help: "leave out `metrics.pairs`",
+            },
+            Share {
+                what: "what became of copies on every link",
+                bytes: view.links() * LINK,
+                field: "metrics.links",
+                also: &["swarm.robots", "radio.range_payload"],
+                help: "leave out `metrics.links`",
             },
             Share {
                 what: "failures and who notices them",

@@ -69,6 +69,12 @@ impl<'a> View<'a> {
         if self.scenario.metrics.pairs { self.pairs } else { 0.0 }
     }
 
+    /// Links of which the scenario wants to know what became of copies.
+    pub fn links(&self) -> f64 {
+        let wanted = self.scenario.metrics.links && self.scenario.radio.shared().is_some();
+        if wanted { self.pairs } else { 0.0 }
+    }
+
     fn moves(&self) -> bool {
         self.scenario.moves()
     }

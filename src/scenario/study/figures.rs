@@ -44,10 +44,18 @@ fn is_of_pairs(key: &str) -> bool {
     key.starts_with("pairs.")
 }
 
+/// Whether a figure is of radios on which frames take time.
+fn is_of_air(key: &str) -> bool {
+    key.starts_with("radio.") || key == "goodput_bps"
+}
+
 /// Says that a figure is not known, and which may be meant.
 pub fn unknown(key: &str, known: &[String]) -> String {
     if is_of_pairs(key) && !known.iter().any(|key| is_of_pairs(key)) {
         return format!("`{key}` is there only where all settings say `metrics: (pairs: true)`");
+    }
+    if is_of_air(key) && !known.iter().any(|key| is_of_air(key)) {
+        return format!("`{key}` is there only where the radio of all settings has a technology");
     }
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let guess = nearest(key, &known).map_or_else(String::new, |name| format!(", did you mean `{name}`?"));

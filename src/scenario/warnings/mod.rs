@@ -14,6 +14,7 @@ use crate::radio::{LossConfig, SensingConfig};
 pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
     let mut found = unread(scenario);
     found.extend(losses(scenario));
+    found.extend(links(scenario));
     found.extend(time::warnings(scenario));
     found.extend(place::warnings(scenario));
     found.extend(scenario.protocol.warnings(&scenario.sections(), scenario.completion()));
@@ -42,6 +43,16 @@ fn losses(scenario: &Scenario) -> Option<Problem> {
         }
         _ => None,
     }
+}
+
+/// Links that are to be followed where the radio tells nothing of them.
+fn links(scenario: &Scenario) -> Option<Problem> {
+    let in_vain = scenario.metrics.links && scenario.radio.shared().is_none();
+    in_vain.then(|| {
+        let message = "`metrics.links` is set, but the disk radio measures nothing on its links";
+        let help = "leave `metrics.links` out, say `metrics: (pairs: true)`, or give the radio a technology";
+        Problem::new("metrics.links", message, help).with(&["radio"])
+    })
 }
 
 /// Settings that differ from their defaults and that nothing reads with this protocol.

@@ -1,6 +1,7 @@
 //! What `desim scenario` leaves behind: the results folder, its resumption, its refusals, its report, its exit status. All of it
 //! is about folders with their tables, which a build without Parquet does not write.
 
+mod air;
 mod command;
 mod documentation;
 mod explain;

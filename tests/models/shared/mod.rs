@@ -1,6 +1,7 @@
 //! The shared radio, measured in whole runs of the kind `Traffic`: against closed forms, against ns-3 on the same topologies, and against the disk radio, of which it is the
 //! general case.
 
+mod air;
 mod disk;
 mod forms;
 mod invariants;

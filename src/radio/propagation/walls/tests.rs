@@ -194,7 +194,7 @@ proptest! {
             .iter()
             .map(|&(x, y, upright)| {
                 let from = place(at(x), at(y));
-                Obstacle { shape: ObstacleShape::Segment { from, to: from + back(upright) }, loss_db: None }
+                Obstacle { shape: Shape::Segment(from, from + back(upright)), attenuation: None }
             })
             .collect();
         let walls = Walls::new(&obstacles, 8.0);

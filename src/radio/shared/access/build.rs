@@ -8,7 +8,7 @@ use super::dcf::{self, Dcf};
 use super::paced::{Pace, Paced};
 use super::tdma::Tdma;
 use crate::engine::Span;
-use crate::quantity::{NonNegative, Positive, Probability};
+use crate::quantity::{NonNegative, Probability};
 use crate::radio::technology::{Phy, TechnologyConfig, WifiStandard};
 
 /// The payload of the longest MPDU that counts as short (aMaxSIFSFrameSize 18, less 11 of headers).

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::Span;
 use crate::quantity::{NonNegative, Positive, Probability};
-use crate::radio::technology::{Phy, TechnologyConfig, WifiStandard};
+use crate::radio::technology::TechnologyConfig;
 
 /// When a robot that has something to send does. Each technology has its own; any may be set for any.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,0 +1,74 @@
+//! Bands of distance: the same in all runs, whatever their radio, so that trials and scenarios can be put together.
+
+/// Bands from one distance to twice that.
+const PER_DOUBLING: i32 = 4;
+/// The first band ends at 2⁻⁷ m, 8 mm, and begins with no distance at all; the last one ends at 2²⁰ m, and takes what is farther.
+const FIRST: i32 = -7 * PER_DOUBLING;
+const LAST: i32 = 20 * PER_DOUBLING;
+
+/// Bands of distance, four from one distance to twice that.
+#[derive(Debug)]
+pub(super) struct Bands {
+    /// Where they end, metres.
+    ends: Vec<f64>,
+}
+
+impl Bands {
+    pub fn new() -> Self {
+        let ends = FIRST..=LAST;
+        Self {
+            ends: ends
+                .map(|step| libm::exp2(f64::from(step) / f64::from(PER_DOUBLING)))
+                .collect(),
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// The band of a distance, metres.
+    pub fn of(&self, distance: f32) -> usize {
+        let distance = f64::from(distance);
+        self.ends
+            .partition_point(|end| *end <= distance)
+            .min(self.ends.len() - 1)
+    }
+
+    /// From where to where a band goes, metres.
+    pub fn bounds(&self, band: usize) -> [f64; 2] {
+        let from = band.checked_sub(1).map_or(0.0, |before| self.ends[before]);
+        [from, self.ends[band]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn bands_go_on_where_others_end_from_no_distance_to_any() {
+        let bands = Bands::new();
+        assert_eq!((bands.of(0.0), bands.of(f32::MAX)), (0, bands.len() - 1));
+        for band in 1..bands.len() {
+            assert_eq!(bands.bounds(band)[0].to_bits(), bands.bounds(band - 1)[1].to_bits());
+        }
+        assert_eq!(
+            bands.bounds(bands.of(1.0)),
+            [1.0, 2.0_f64.powf(0.25)],
+            "an end belongs to the next"
+        );
+        assert_eq!(bands.bounds(bands.of(0.999_999))[1].to_bits(), 1.0_f64.to_bits());
+    }
+
+    proptest! {
+        #[test]
+        fn a_distance_is_within_its_band(distance in 0.0..1e6_f32) {
+            let bands = Bands::new();
+            let [from, to] = bands.bounds(bands.of(distance));
+            prop_assert!((from..to).contains(&f64::from(distance)));
+        }
+    }
+}
