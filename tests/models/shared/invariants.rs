@@ -120,6 +120,52 @@ fn received(capture: &str) -> BTreeSet<(u32, u32, u32)> {
     finished.expect("the run ends").observer.0
 }
 
+/// Nobody's business but that all is told in order, so that no robot takes a step ahead of its time.
+struct InOrder;
+
+impl desim::simulation::Observer for InOrder {
+    const IN_ORDER: bool = true;
+}
+
+/// Control steps are taken in rounds up to the radio's lookahead: a robot that steps within it cannot have heard what is sent meanwhile. With a lookahead of a millisecond
+/// more the digests differ.
+#[test]
+fn rounds_of_control_steps_do_not_show() {
+    for radio in [
+        "technology: Ieee802154()",
+        "technology: Wifi(standard: B, rate: 11e6)",
+        "technology: Custom(bit_rate: None), access: None",
+    ] {
+        let scenario = scenario(1.0, "", EVERYBODY, radio);
+        let mut setup = desim::simulation::Setup::lasting(desim::engine::Span::from_secs(4.0));
+        setup.own_radio = Some(std::sync::Arc::new(scenario.radio.shared().expect("shared").clone()));
+        setup.control.period = desim::quantity::Positive::new(0.05);
+        setup.motion.tick = desim::quantity::Positive::new(0.05);
+        let robots = || {
+            let timing = desim::kinds::traffic::Timing::Poisson(desim::quantity::Positive::new(20.0));
+            let source = desim::kinds::traffic::Source::new(timing, 20, Some(desim::kinds::traffic::To::Everyone));
+            vec![source; 30]
+        };
+        let poses = || {
+            let place = |robot: i32| desim::geometry::Vec2::new(f64::from(robot % 6), f64::from(robot / 6));
+            let pose = |robot| desim::geometry::Pose {
+                position: place(robot),
+                heading: 0.0,
+            };
+            (0..30).map(pose).collect::<Vec<_>>()
+        };
+        let stop = CancellationToken::new();
+        let rounds = setup
+            .run(poses(), robots(), DriverKind::Inline, &stop)
+            .expect("the run ends");
+        let steps = setup
+            .observe(poses(), robots(), DriverKind::Inline, &stop, InOrder)
+            .expect("the run ends");
+        assert_eq!(rounds.digest, steps.record.digest, "{radio}");
+        assert!(rounds.ledger[0].delivered > 10_000, "{}", rounds.ledger[0]);
+    }
+}
+
 #[test]
 fn what_survives_at_a_capture_ratio_survives_at_every_lower_one() {
     let [none, three, six, strict] = ["0.0", "3.0", "6.0", "inf"].map(received);
