@@ -101,13 +101,15 @@ def ratio(parts, kind):
     if len(terms) < 2:
         return estimate(value, n=n)
     moments = Moments(terms)
-    flat = all(abs(term) < 1e-15 * max(value, 1e-300) for term in terms)
+    flat = all(abs(term) < 1e-15 * max(abs(value), 1e-300) for term in terms)
     inflation = (student.ppf(0.975, n - 1) / z) ** 2
-    if kind in ("mean", "fraction", "count"):
+    if kind in ("mean", "signed", "fraction", "count"):
         if flat:
             ends = (value, value) if kind != "count" else (None, None)
         else:
             ends = hall(value, moments)
+        if kind == "signed":
+            return estimate(value, *ends, n)
         return at_least_0(estimate(value, *ends, n), 1.0 if kind == "fraction" else math.inf)
     if kind == "rate":
         events = total(a for a, _ in parts)
@@ -528,6 +530,7 @@ class Folder:
             "steps": {"value": self.trials["steps"].sum()},
             "simulated_s": {"value": total(self.trials["simulated_s"])},
             **self.further(),
+            **self.air(),
         }
 
     def further(self):
@@ -551,6 +554,68 @@ class Folder:
         """The hops that rumours came over to robots that had them from others in a trial, and how many these are."""
         hops = self.rumors.filter(pl.col("trial") == trial, pl.col("hops") > 0)["hops"]
         return hops.sum(), len(hops)
+
+    def air(self):
+        """What radios did, over one on which frames take time."""
+        if not (self.path / "radio.parquet").exists():
+            return {}
+        robots, waits = self.table("radio"), self.table("waits") if (self.path / "waits.parquet").exists() else None
+        trials = [(robots.filter(trial=trial), seconds) for trial, seconds in self.trials.select("trial", "simulated_s").iter_rows()]
+
+        def share(column):
+            return mean([mean([value / seconds for value in rows[column]])["value"] for rows, seconds in trials], "fraction")
+
+        def wait(column):
+            means = [rows[column].sum() / rows["on_air"].sum() if rows["on_air"].sum() else None for rows, _ in trials]
+            return mean(means, "mean")
+
+        def late(trial):
+            rows = robots.filter(trial=trial)
+            least, most = rows["access_delay_min_s"].min(), rows["access_delay_max_s"].max()
+            if least is None:
+                return None
+            least, most = round(least * 1e9), round(most * 1e9)
+            buckets = waits.filter(trial=trial, wait="access").sort("low_ns").select("low_ns", "high_ns", "count").rows()
+            rank, below = math.ceil(0.95 * sum(held for *_, held in buckets)), 0
+            for low, high, held in buckets:
+                below += held
+                if below >= rank:
+                    return min(max(low + (high - low) // 2, least), most) / 1e9
+
+        def of_sums(part, whole, kind):
+            return ratio([(rows[part].sum() if isinstance(part, str) else part(rows), whole(rows)) for rows, _ in trials], kind)
+
+        def heard(rows):
+            known = [(count, power) for count, power in rows.select("delivered", "delivered_power_dBm_mean").iter_rows() if power is not None]
+            weight = sum(count for count, _ in known)
+            return total(count * power for count, power in known) / weight if weight else None
+
+        states = [column for column in robots.columns if column.startswith("energy_")]
+        spent = [[total(row) for row in rows.select(states).iter_rows()] for rows, _ in trials]
+        causes = [column for column in robots.columns if column.startswith("dropped_")]
+        payload = self.bandwidth.filter(direction="rx").group_by("trial").agg(pl.col("payload_bytes").sum())
+        payload = dict(payload.iter_rows())
+        rates = [8 * payload.get(trial, 0) / seconds for trial, seconds in self.trials.select("trial", "simulated_s").iter_rows()]
+        energy = mean([mean(each)["value"] if any(each) else None for each in spent], "mean")
+        by_state = {column.removeprefix("energy_").removesuffix("_J"): total(robots[column]) / len(robots) for column in states}
+        counts = ("frames", "on_air", "attempts", "acknowledged", "unacknowledged")
+        return {
+            "goodput_bps": mean(rates, "mean"),
+            "radio": {
+                "airtime_share": share("sent_s"),
+                "busy_share": share("busy_s"),
+                "queue_wait_s": {"mean": wait("queue_wait_sum_s")},
+                "access_delay_s": {"mean": wait("access_delay_sum_s"), "p95": mean([late(trial) for trial in self.trials["trial"]], "mean")},
+                "attempts": of_sums("attempts", lambda rows: rows["on_air"].sum(), "mean"),
+                "unacknowledged": of_sums("unacknowledged", lambda rows: rows["unacknowledged"].sum() + rows["acknowledged"].sum(), "share of things"),
+                "dropped": of_sums(lambda rows: rows["frames"].sum() - rows["on_air"].sum(), lambda rows: rows["frames"].sum(), "share of things"),
+                "energy_J": energy,
+                "power_dBm": mean([heard(rows) for rows, _ in trials], "signed"),
+                "sending": {**{name: robots[name].sum() for name in counts}, "dropped": {column.removeprefix("dropped_"): robots[column].sum() for column in causes}},
+                **({"energy_by_state_J": by_state} if energy["value"] is not None else {}),
+                "empty": {"value": robots["empty_s"].count()},
+            },
+        }
 
     def pairs(self):
         """Every measure of pairs: the mean over the pairs of a trial, and over trials."""

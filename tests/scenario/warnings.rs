@@ -338,6 +338,18 @@ fn a_range_below_two_bodies_or_far_beyond_the_arena_is_warned_of() {
 }
 
 #[test]
+fn links_that_the_radio_tells_nothing_of_are_warned_of() {
+    assert_warned(
+        "Heartbeat",
+        "metrics: (links: true)",
+        "metrics.links",
+        "the disk radio measures nothing",
+    );
+    let shared = warned("Heartbeat", "metrics: (links: true), radio: (technology: Ieee802154())");
+    assert!(!fields(&shared).contains(&"metrics.links"), "{shared:?}");
+}
+
+#[test]
 fn a_channel_that_lets_nothing_through_or_is_never_bad_is_warned_of() {
     assert_warned(
         "Heartbeat",

@@ -88,7 +88,7 @@ fn copies_are_counted_at_their_receiver_by_distance_and_by_link() {
     let mut air = Air::new(3, true);
     for (sender, reading) in [
         (0, reading(1, 1.0, -60.0, true)),
-        (0, reading(1, 1.1, -70.0, false)),
+        (0, reading(1, 1.1, -76.0, false)),
         (0, reading(1, 3.0, f32::NEG_INFINITY, false)),
         (2, reading(1, 1.0, -80.0, true)),
     ] {
@@ -99,7 +99,7 @@ fn copies_are_counted_at_their_receiver_by_distance_and_by_link() {
         offered: 4,
         delivered: 2,
         reached: 3,
-        power_dbm: Some(-70.0),
+        power_dbm: Some(-72.0),
         delivered_power_dbm: Some(-70.0),
     };
     assert_eq!(record.robots[1].heard, all);
@@ -123,7 +123,7 @@ fn copies_are_counted_at_their_receiver_by_distance_and_by_link() {
             )
         })
         .collect();
-    assert_eq!(links, [(0, 1, 3, Some(-65.0)), (2, 1, 1, Some(-80.0))]);
+    assert_eq!(links, [(0, 1, 3, Some(-68.0)), (2, 1, 1, Some(-80.0))]);
     let mean = (1.0 + f64::from(1.1_f32) + 3.0) / 3.0;
     assert!((record.links[0].distance_m - mean).abs() < 1e-12);
 }

@@ -75,7 +75,7 @@ fn a_transmission_with_every_fate_balances_and_is_recorded_at_its_receivers() {
 
 #[test]
 #[should_panic(
-    expected = "frames were not conserved on topic 0: offered 10, delivered 2, lost 1 (channel 1, link_fault 0, receiver_down 0, below_sensitivity 0), in flight 1"
+    expected = "frames were not conserved on topic 0: offered 10, delivered 2, lost 1 (channel 1, link_fault 0, receiver_down 0, below_sensitivity 0, collision 0, half_duplex 0, access_failure 0, queue_full 0, duty_cycle 0, too_long 0, occlusion 0, sender_down 0), in flight 1"
 )]
 fn a_broken_ledger_ends_the_run_with_every_number() {
     let mut recorder = recorder(None);

@@ -237,6 +237,20 @@ mod tests {
         (needs.shares.iter().map(|share| share.bytes).sum::<f64>() + PROGRAM) / 1e6
     }
 
+    #[test]
+    fn links_take_memory_where_there_is_something_to_keep_of_them() {
+        let with = |radio: &str, links: bool| {
+            needs(&format!(
+                "time_limit: 60.0, swarm: (robots: 1000, deploy: Uniform), protocol: Traffic(), radio: ({radio}), metrics: (links: {links})"
+            ))
+        };
+        let technology = "technology: Ieee802154()";
+        let more = with(technology, true) - with(technology, false);
+        // Everybody hears everybody.
+        assert!((more - 1000.0 * 999.0 * LINK / 1e6).abs() < 1.0, "{more} MB");
+        assert!((with("", true) - with("", false)).abs() < f64::EPSILON);
+    }
+
     /// Peak memory of the command as the system told it, MB, on 64 bits, of a run of each scenario with one thread.
     #[test]
     fn the_estimate_is_no_less_than_what_runs_took_and_no_more_than_three_times_as_much() {

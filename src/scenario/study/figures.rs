@@ -81,3 +81,30 @@ pub fn problems(scenarios: &[&Scenario], named: &[String], also: usize, axes: Op
     all.map(|(place, key)| Problem::new(&place, unknown(key, &known), help(&known)))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn over(radio: &str) -> Scenario {
+        let text = format!(
+            "Scenario(name: \"a\", swarm: (robots: 3, deploy: Cluster(radius: 0.5)), protocol: Traffic(), radio: ({radio}))"
+        );
+        crate::scenario::parse("a.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
+    }
+
+    #[test]
+    fn figures_of_the_air_are_common_to_settings_that_all_share_it() {
+        let (disk, shared) = (over(""), over("technology: Ieee802154()"));
+        let of_air = |scenarios: &[&Scenario]| common(scenarios).iter().filter(|key| is_of_air(key)).count();
+        assert_eq!(of_air(&[&shared, &shared]), 11);
+        assert_eq!((of_air(&[&shared, &disk]), of_air(&[&disk])), (0, 0));
+        let none = unknown("radio.busy_share", &common(&[&shared, &disk]));
+        assert!(
+            none.ends_with("only where the radio of all settings has a technology"),
+            "{none}"
+        );
+        let typo = unknown("radio.busy_shares", &common(&[&shared]));
+        assert!(typo.ends_with("did you mean `radio.busy_share`?"), "{typo}");
+    }
+}

@@ -1,5 +1,7 @@
 //! Made-up trials: quick, and with every kind of value that a record can hold.
 
+mod air;
+
 use std::num::NonZeroUsize;
 use std::path::Path;
 
@@ -10,9 +12,9 @@ use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
 use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
 use desim::metrics::{
-    AirRecord, Amount, ConnectivitySample, Copies, DistanceBand, FaultEpisode, FaultKind, HealingEpisode,
-    LatencyHistogram, LinkRecord, Noted, Outcome, PAIR_MEASURES, PairRecord, RobotAir, RobotBytes, RobotState,
-    RumorSpread, SeriesEntry, TargetSample, TargetState, TopicFates, TrafficRow, TrialRecord, Values, Volume, Waits,
+    Amount, ConnectivitySample, FaultEpisode, FaultKind, HealingEpisode, LatencyHistogram, Noted, Outcome,
+    PAIR_MEASURES, PairRecord, RobotBytes, RobotState, RumorSpread, SeriesEntry, TargetSample, TargetState, TopicFates,
+    TrafficRow, TrialRecord, Values, Volume,
 };
 use desim::radio::LossCause;
 use desim::scenario::{Scenario, parse};
@@ -61,7 +63,7 @@ pub fn record(trial: u32) -> TrialRecord {
         spread: spread(trial),
         noted: noted(trial),
         pairs: pairs(trial),
-        air: Some(air(trial)),
+        air: Some(air::air(trial)),
         detection: detection(trial),
         trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),
@@ -250,71 +252,6 @@ fn pairs(trial: u32) -> Vec<PairRecord> {
             values: values(robot).collect(),
         })
         .collect()
-}
-
-/// What robots' radios did: one sent nothing in the first trial, and nothing arrived with any power at another.
-fn air(trial: u32) -> AirRecord {
-    let (mut queue_wait, mut access_delay) = (LatencyHistogram::default(), LatencyHistogram::default());
-    let mut waits = |histogram: usize, robot: u32| {
-        let spans = (1..4).map(|n| Span::from_nanos(u64::from(n * 777_001 * robot + trial)));
-        let histogram = [&mut queue_wait, &mut access_delay].into_iter().nth(histogram);
-        let histogram = histogram.expect("one of two");
-        spans.clone().for_each(|span| histogram.record(span));
-        Waits {
-            sum: spans.clone().fold(Span::ZERO, |sum, span| sum + span),
-            min: spans.clone().min().expect("some"),
-            max: spans.max().expect("some"),
-        }
-    };
-    let mut robot = |robot: u32| {
-        let sends = trial > 0 || robot > 0;
-        let on_air = if sends { 3 } else { 0 };
-        RobotAir {
-            sent: Span::from_nanos(u64::from(1_000_003 * robot)),
-            busy: Span::from_nanos(u64::from(7_000_003 * robot + trial)),
-            energy: [0.25, 0.5, 1.0 / 3.0, f64::from(robot)],
-            empty_at: (robot == 8).then(|| SimTime::from_secs(50.7)),
-            frames: on_air + 2,
-            on_air,
-            attempts: 2 * on_air,
-            acknowledged: on_air / 3,
-            unacknowledged: on_air / 3,
-            dropped: std::array::from_fn(|cause| u64::from(cause == 6 || cause == 7)),
-            queue_wait: sends.then(|| waits(0, robot)),
-            access_delay: sends.then(|| waits(1, robot + 1)),
-            heard: copies(robot, trial),
-        }
-    };
-    let robots = (0..ROBOTS).map(&mut robot).collect();
-    let band = |band: u32| DistanceBand {
-        from_m: f64::from(band),
-        to_m: f64::from(band + 1),
-        copies: copies(band, trial),
-    };
-    let link = |sender: u32| LinkRecord {
-        sender: ActorId(sender),
-        receiver: ActorId(sender + 1),
-        copies: copies(sender, trial),
-        distance_m: f64::from(sender + 1) / 3.0,
-    };
-    AirRecord {
-        robots,
-        queue_wait,
-        access_delay,
-        bands: (0..5).map(band).collect(),
-        links: (0..ROBOTS - 1).map(link).collect(),
-    }
-}
-
-fn copies(number: u32, trial: u32) -> Copies {
-    let heard = number != 2;
-    Copies {
-        offered: u64::from(100 + number),
-        delivered: if heard { u64::from(90 - 3 * number + trial) } else { 0 },
-        reached: if heard { u64::from(100 + number) } else { 0 },
-        power_dbm: heard.then(|| -60.0 - f64::from(number + trial) / 3.0),
-        delivered_power_dbm: heard.then(|| -59.0 - f64::from(number + trial) / 7.0),
-    }
 }
 
 fn connectivity(sample: u64, odd: f64) -> ConnectivitySample {

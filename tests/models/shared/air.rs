@@ -96,7 +96,7 @@ fn frames_wait_for_each_other_as_in_m_d_1() {
             load / AIRTIME_S
         );
         let scenario = pair(40.0, &traffic, "access: Aloha(), queue: 1000, transmit_power: 0.0");
-        let records = runs(&scenario, 10);
+        let records = runs(&scenario, 40);
         let expected = load * AIRTIME_S / (2.0 * (1.0 - load));
         figure(&scenario, &records, "radio.queue_wait_s.mean").agrees(&format!("ρ = {load}"), expected, 0.0, 0.0);
         figure(&scenario, &records, "radio.access_delay_s.mean").agrees("no access", 0.0, 0.0, 0.0);
