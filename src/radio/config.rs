@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::disk_config::{DiskConfig, LatencyConfig, LossConfig, SensingConfig, WallsConfig};
 use super::medium::RadioKind as _;
@@ -223,20 +223,35 @@ impl JsonSchema for RadioConfig {
         "RadioConfig".into()
     }
 
-    /// The fields of both, in one object: those of the disk radio first.
+    /// The fields of both, in one object, of which either those of the one or of the other may stand.
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let mut properties = serde_json::Map::new();
-        for schema in [DiskConfig::json_schema(generator), SharedConfig::json_schema(generator)] {
-            let own = schema.get("properties").and_then(Value::as_object).cloned();
-            for (field, shape) in own.unwrap_or_default() {
-                properties.entry(field).or_insert(shape);
-            }
+        let [disk, shared] = [DiskConfig::json_schema(generator), SharedConfig::json_schema(generator)].map(|schema| {
+            schema
+                .get("properties")
+                .and_then(Value::as_object)
+                .cloned()
+                .unwrap_or_default()
+        });
+        let without = |mine: &Map<String, Value>, others: &Map<String, Value>| {
+            let refused = others.keys().filter(|field| !mine.contains_key(*field));
+            refused
+                .map(|field| (field.clone(), Value::Bool(false)))
+                .collect::<Map<_, _>>()
+        };
+        let (no_shared, no_disk) = (without(&disk, &shared), without(&shared, &disk));
+        let mut properties = disk;
+        for (field, shape) in shared {
+            properties.entry(field).or_insert(shape);
         }
         json_schema!({
             "description": "The radio: a disk (`range`, `loss`, `latency`), or a `technology` on a shared medium (`Shared(technology: ...)`).",
             "type": "object",
             "properties": properties,
             "additionalProperties": false,
+            "anyOf": [
+                { "properties": no_shared },
+                { "required": ["technology"], "properties": no_disk },
+            ],
         })
     }
 }

@@ -18,6 +18,16 @@ fn value(schema: &Value, root: &Value, random: &mut impl Rng) -> Value {
     if let Some(choices) = schema["oneOf"].as_array() {
         return value(&choices[random.random_range(0..choices.len())], root, random);
     }
+    if schema.get("properties").is_none()
+        && let Some(choices) = schema["anyOf"].as_array()
+    {
+        return value(&choices[random.random_range(0..choices.len())], root, random);
+    }
+    if let Some(types) = schema["type"].as_array() {
+        let mut one = schema.clone();
+        one["type"] = types[random.random_range(0..types.len())].clone();
+        return value(&one, root, random);
+    }
     if let Some(constant) = schema.get("const") {
         return constant.clone();
     }
@@ -27,6 +37,7 @@ fn value(schema: &Value, root: &Value, random: &mut impl Rng) -> Value {
     match schema["type"].as_str() {
         Some("number") => number(schema, random),
         Some("integer") => integer(schema, random),
+        Some("null") => Value::Null,
         Some("boolean") => random.random::<bool>().into(),
         Some("string") => "a-Name_9".into(),
         Some("array") => array(schema, root, random),
@@ -72,16 +83,19 @@ fn array(schema: &Value, root: &Value, random: &mut impl Rng) -> Value {
         .collect()
 }
 
-/// All required fields, and each of the others as often as not.
+/// All required fields, and each of the others as often as not. Where there are alternatives, one of them says which fields there must be and which not.
 fn object(schema: &Value, root: &Value, random: &mut impl Rng) -> Value {
+    let alternatives = schema["anyOf"].as_array();
+    let alternative = alternatives.map_or(&Value::Null, |all| &all[random.random_range(0..all.len())]);
     let required = |name: &String| {
-        let names = schema["required"].as_array();
-        names.is_some_and(|names| names.iter().any(|other| other == name))
+        let names = [schema, alternative].map(|schema| schema["required"].as_array());
+        names.into_iter().flatten().flatten().any(|other| other == name)
     };
+    let refused = |name: &String| alternative["properties"][name.as_str()] == Value::Bool(false);
     let fields = schema["properties"].as_object().into_iter().flatten();
     let mut object = Map::new();
     for (name, field) in fields {
-        if required(name) || random.random() {
+        if !refused(name) && (required(name) || random.random()) {
             object.insert(name.clone(), value(field, root, random));
         }
     }

@@ -9,6 +9,7 @@ use crate::metrics::{
 use crate::radio::LossCause;
 
 /// What one robot's radio did in one trial.
+#[allow(clippy::struct_field_names)] // Its robot is its number.
 pub struct Robot {
     trial: u32,
     robot: u32,
@@ -23,6 +24,10 @@ pub fn robots(record: &TrialRecord) -> impl Iterator<Item = Robot> {
         air: air.clone(),
     })
 }
+
+/// A wait of a robot, and a time of it.
+type Of = fn(&RobotAir) -> Option<Waits>;
+type Part = fn(Waits) -> Span;
 
 pub fn robot_columns() -> Vec<Column<Robot>> {
     type Col = Column<Robot>;
@@ -41,11 +46,11 @@ pub fn robot_columns() -> Vec<Column<Robot>> {
     columns.extend(
         causes.map(|(place, cause)| Col::count(format!("dropped_{}", cause.name()), move |row| row.air.dropped[place])),
     );
-    let waits: [(&str, fn(&RobotAir) -> Option<Waits>); 2] = [
+    let waits: [(&str, Of); 2] = [
         ("queue_wait", |robot| robot.queue_wait),
         ("access_delay", |robot| robot.access_delay),
     ];
-    let parts: [(&str, fn(Waits) -> Span); 3] = [
+    let parts: [(&str, Part); 3] = [
         ("sum", |waits| waits.sum),
         ("min", |waits| waits.min),
         ("max", |waits| waits.max),
@@ -85,9 +90,11 @@ pub struct Bucket {
     count: u64,
 }
 
+/// A histogram of a trial.
+type Histogram = fn(&AirRecord) -> &LatencyHistogram;
+
 /// What frames wait for, and the histogram of it.
-pub const WAITS: [(&str, fn(&AirRecord) -> &LatencyHistogram); 2] =
-    [("queue", |air| &air.queue_wait), ("access", |air| &air.access_delay)];
+pub const WAITS: [(&str, Histogram); 2] = [("queue", |air| &air.queue_wait), ("access", |air| &air.access_delay)];
 
 pub fn waits(record: &TrialRecord) -> impl Iterator<Item = Bucket> {
     let histograms = record

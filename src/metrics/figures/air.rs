@@ -30,11 +30,14 @@ impl Registry {
     }
 }
 
+/// A time of a robot.
+type Time = fn(&RobotAir) -> Span;
+
 fn declare(registry: &mut Registry) {
     let goodput = ("bit/s", Better::Higher, Estimator::Mean);
     registry.add_plain("goodput_bps", "goodput", goodput, goodput_bps);
     let share = (DIMENSIONLESS, Better::Lower, Estimator::Fraction);
-    let shares: [(&str, &str, fn(&RobotAir) -> Span); 2] = [
+    let shares: [(&str, &str, Time); 2] = [
         ("radio.airtime_share", "time that a robot sends", |robot| robot.sent),
         (
             "radio.busy_share",

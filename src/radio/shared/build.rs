@@ -33,7 +33,7 @@ const QUIET_DB: f64 = 30.0;
 impl SharedConfig {
     /// The links between the robots of a trial.
     pub(super) fn budget(&self, phy: &Phy, site: &RadioSite) -> LinkBudget {
-        let spread = self.spread(&site.streams, site.robots, phy.transmit_power);
+        let spread = self.spread(site.streams, site.robots, phy.transmit_power);
         let sigma = self.shadowing.as_ref().map_or(0.0, |shadowing| shadowing.sigma.get());
         let fading = Fading::new(&self.fading, &site.streams, phy.frequency);
         let threshold = range::threshold_dbm(phy, &self.fading, self.range_payload.into());
@@ -122,7 +122,7 @@ impl SharedConfig {
     }
 
     /// What each robot sends with, its antenna's gain included, dBm, and that gain, dB.
-    fn spread(&self, streams: &Streams, robots: usize, power: f64) -> (Vec<f64>, Vec<f64>) {
+    fn spread(&self, streams: Streams, robots: usize, power: f64) -> (Vec<f64>, Vec<f64>) {
         let streams = streams.keyed(POWERS);
         let normal = |mean: f64, spread: NonNegative| Normal::new(mean, spread.get()).ok();
         let power = normal(power, self.transmit_power_spread);
@@ -172,11 +172,11 @@ impl Shared {
                 access.is_orthogonal(),
                 access.latency(),
                 jammers.background(),
-                &site.streams,
+                site.streams,
             ),
             jammers,
             sensing: Sensing::new(&config.sensing, site.streams),
-            draws: Draws::new(&site.streams, robots),
+            draws: Draws::new(site.streams, robots),
             agenda,
             bursts: Bursts::default(),
             radios: std::iter::repeat_with(Radio::default).take(robots).collect(),

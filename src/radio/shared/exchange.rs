@@ -72,7 +72,7 @@ impl Shared {
         let mut reached = std::mem::take(&mut self.reached);
         reached.clear();
         places.for_each_within(position, now, self.budget.audible(), &mut |other, place| {
-            reached.push((other, place))
+            reached.push((other, place));
         });
         for &(other, place) in &reached {
             if other == robot || self.is_hidden(robot, position, other, place, &reached) {
@@ -116,7 +116,7 @@ impl Shared {
         reached.clear();
         let range = self.budget.audible_from(jammer.power);
         places.for_each_within(jammer.position, now, range, &mut |robot, place| {
-            reached.push((robot, place))
+            reached.push((robot, place));
         });
         for &(robot, place) in &reached {
             let power = self

@@ -43,7 +43,7 @@ pub(super) struct Receiver {
 impl Receiver {
     /// Those of `phy`, with so much noise beside their own. `orthogonal`: whether frames do not disturb each other; `latency`: how long one must have been on air
     /// before it is noticed.
-    pub fn new(phy: &Phy, orthogonal: bool, latency: Span, background: f64, streams: &Streams) -> Self {
+    pub fn new(phy: &Phy, orthogonal: bool, latency: Span, background: f64, streams: Streams) -> Self {
         Self {
             noise: milliwatts(phy.noise) + background,
             sensitivity: milliwatts(phy.sensitivity),
@@ -199,10 +199,10 @@ impl Receiver {
         let bits = match burst.content {
             Content::Frame { frame, attempt, .. } => {
                 let words = [frame.sender.0, robot.0, frame.number];
-                nth(&self.errors, words, attempt * 4 + u32::from(burst.channel))
+                nth(self.errors, words, attempt * 4 + u32::from(burst.channel))
             }
             Content::Acknowledgement { of, .. } => {
-                nth(&self.acknowledgements, [burst.sender.0, robot.0, of.0 as u32], 0)
+                nth(self.acknowledgements, [burst.sender.0, robot.0, of.0 as u32], 0)
             }
             Content::Noise => 0,
         };
@@ -237,7 +237,7 @@ impl Tables {
 }
 
 /// The so manieth 64 bits of a stream, from 0.
-fn nth(streams: &KeyedStreams, [a, b, sequence]: [u32; 3], place: u32) -> u64 {
+fn nth(streams: KeyedStreams, [a, b, sequence]: [u32; 3], place: u32) -> u64 {
     if place == 0 {
         return streams.first_two(a, b, sequence)[0];
     }
@@ -255,7 +255,7 @@ struct Chunk {
 
 impl Chunk {
     /// What is on air at `from`, until that changes or until `end`.
-    fn of<'a>(from: SimTime, end: SimTime, others: &mut dyn Iterator<Item = &'a Heard>) -> Self {
+    fn of(from: SimTime, end: SimTime, others: &mut dyn Iterator<Item = &Heard>) -> Self {
         let mut chunk = Self {
             until: end,
             frames: 0.0,

@@ -28,7 +28,7 @@ fn pure_aloha() {
         let expected = ((1.0 - load) * (-load).exp()).powi(robots - 1);
         let traffic = format!("when: Poisson({rate:?}), payload: 20");
         let radio = format!("{IEEE802154}, access: Aloha(), capture: inf");
-        let records = everybody(30.0, &traffic, &radio, robots as u32, 12);
+        let records = everybody(30.0, &traffic, &radio, robots.cast_unsigned(), 12);
         measured(&records, delivery).agrees(&format!("{robots} robots at {rate} /s"), expected, 0.0, 0.0);
     }
 }
@@ -40,7 +40,7 @@ fn slotted_aloha() {
         let radio =
             format!("{IEEE802154}, access: SlottedAloha(slot: 0.0012, probability: {probability}), capture: inf");
         let records = everybody(10.0, "when: Saturated, payload: 20", &radio, robots, 10);
-        let expected = (1.0_f64 - probability).powi(robots as i32 - 1);
+        let expected = (1.0_f64 - probability).powi(robots.cast_signed() - 1);
         measured(&records, delivery).agrees(&format!("{robots} robots, p = {probability}"), expected, 0.0, 0.0);
     }
 }
@@ -59,7 +59,7 @@ fn rayleigh_capture() {
         let z = 10_f64.powf(capture / 10.0);
         let busy = 1.0 / f64::from(robots);
         // Of the others a receiver is one itself: it hears nothing while it sends.
-        let expected = (1.0 - busy * z / (1.0 + z)).powi(robots as i32 - 2) * (1.0 - busy);
+        let expected = (1.0 - busy * z / (1.0 + z)).powi(robots.cast_signed() - 2) * (1.0 - busy);
         measured(&records, delivery).agrees(&format!("z = {capture} dB"), expected, 0.0, 0.0);
     }
 }
@@ -113,7 +113,7 @@ fn ble_advertising() {
     for robots in [10, 50] {
         let radio = "technology: BleAdvertising(interval: 0.1), capture: inf";
         let records = everybody(20.0, "when: Saturated, payload: 31", radio, robots, 8);
-        let clean = (1.0_f64 - 2.0 * 376e-6 / 0.105).powi(robots as i32 - 2);
+        let clean = (1.0_f64 - 2.0 * 376e-6 / 0.105).powi(robots.cast_signed() - 2);
         // A receiver's own event is on air on all three channels in turn.
         let awake = 1.0 - 4.0 * 376e-6 / 0.105;
         // It goes on to another channel in the middle of an event in 2 of 3 of 376 µs in each dwell, and may miss all of it.
@@ -162,7 +162,7 @@ fn saturated_dcf() {
                 seconds,
                 "when: Saturated, payload: 1000, to: Next",
                 &radio,
-                robots as u32,
+                robots.cast_unsigned(),
                 4,
             );
             let goodput = |record: &TrialRecord| {

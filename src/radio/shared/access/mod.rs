@@ -158,7 +158,7 @@ pub(super) struct Draws {
 }
 
 impl Draws {
-    pub fn new(streams: &Streams, robots: usize) -> Self {
+    pub fn new(streams: Streams, robots: usize) -> Self {
         Self {
             streams: streams.keyed(Purpose::new("radio.access")),
             drawn: vec![0; robots],
