@@ -100,6 +100,13 @@ impl RadioConfig {
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default, rename = "Shared")]
 struct Fields {
+    range: Option<Positive>,
+    loss: Option<LossConfig>,
+    latency: Option<LatencyConfig>,
+    frame_header_bytes: Option<u16>,
+    message_header_bytes: Option<u16>,
+    sensing: Option<SensingConfig>,
+    walls: Option<WallsConfig>,
     technology: Option<TechnologyConfig>,
     access: Option<AccessConfig>,
     transmit_power: Option<Finite>,
@@ -109,19 +116,12 @@ struct Fields {
     path_loss: Option<PathLossConfig>,
     shadowing: Option<ShadowingConfig>,
     fading: Option<FadingConfig>,
-    walls: Option<WallsConfig>,
     capture: CaptureConfig,
     queue: Option<u32>,
     noise: Option<Vec<NoiseConfig>>,
     negligible: Option<NonNegative>,
     range_payload: Option<u16>,
     battery: Option<Positive>,
-    range: Option<Positive>,
-    loss: Option<LossConfig>,
-    latency: Option<LatencyConfig>,
-    frame_header_bytes: Option<u16>,
-    message_header_bytes: Option<u16>,
-    sensing: Option<SensingConfig>,
 }
 
 impl Fields {
