@@ -8,6 +8,9 @@ use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS};
 use crate::statistics::{Estimator, Part, mean};
 
+/// A time of a robot.
+type Time = fn(&RobotAir) -> Span;
+
 impl Registry {
     /// The same, and the figures of a radio that keeps accounts: of robots that share the air.
     ///
@@ -34,7 +37,7 @@ fn declare(registry: &mut Registry) {
     let goodput = ("bit/s", Better::Higher, Estimator::Mean);
     registry.add_plain("goodput_bps", "goodput", goodput, goodput_bps);
     let share = (DIMENSIONLESS, Better::Lower, Estimator::Fraction);
-    let shares: [(&str, &str, fn(&RobotAir) -> Span); 2] = [
+    let shares: [(&str, &str, Time); 2] = [
         ("radio.airtime_share", "time that a robot sends", |robot| robot.sent),
         (
             "radio.busy_share",
@@ -94,7 +97,7 @@ fn goodput_bps(record: &TrialRecord) -> Option<f64> {
 }
 
 /// Mean over robots.
-fn share_of_time(record: &TrialRecord, time: fn(&RobotAir) -> Span) -> Option<f64> {
+fn share_of_time(record: &TrialRecord, time: Time) -> Option<f64> {
     let all = record.simulated.as_secs();
     let shares: Vec<f64> = robots(record).iter().map(|robot| time(robot).as_secs() / all).collect();
     (all > 0.0).then(|| mean(&shares).value).flatten()

@@ -53,7 +53,7 @@ fn the_channel_is_full_of_what_is_sent() {
         let load = rate * AIRTIME_S;
         let what = format!("{robots} robots at {rate} /s");
         figure(&scenario, &records, "radio.airtime_share").agrees(&format!("{what}: airtime"), load, 0.0, 0.0);
-        let busy = 1.0 - (1.0 - load).powi(robots as i32);
+        let busy = 1.0 - (1.0 - load).powi(robots.cast_signed());
         figure(&scenario, &records, "radio.busy_share").agrees(&format!("{what}: busy"), busy, 0.0, 0.0);
         figure(&scenario, &records, "radio.attempts").agrees(&what, 1.0, 0.0, 0.0);
         figure(&scenario, &records, "radio.power_dBm").agrees(&format!("{what}: power"), -50.0, 0.0, 1e-3);
