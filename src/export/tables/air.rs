@@ -9,31 +9,30 @@ use crate::metrics::{
 use crate::radio::LossCause;
 
 /// What one robot's radio did in one trial.
-#[allow(clippy::struct_field_names)] // Its robot is its number.
 pub struct Robot {
     trial: u32,
-    robot: u32,
+    id: u32,
     air: RobotAir,
 }
 
 pub fn robots(record: &TrialRecord) -> impl Iterator<Item = Robot> {
     let robots = record.air.iter().flat_map(|air| (0..).zip(&air.robots));
-    robots.map(|(robot, air)| Robot {
+    robots.map(|(id, air)| Robot {
         trial: record.trial,
-        robot,
+        id,
         air: air.clone(),
     })
 }
 
-/// A wait of a robot, and a time of it.
-type Of = fn(&RobotAir) -> Option<Waits>;
+/// Waits of a robot's frames, and a part of what they sum up to.
+type OfRobot = fn(&RobotAir) -> Option<Waits>;
 type Part = fn(Waits) -> Span;
 
 pub fn robot_columns() -> Vec<Column<Robot>> {
     type Col = Column<Robot>;
     let mut columns = vec![
         Col::id("trial", |row| row.trial),
-        Col::id("robot", |row| row.robot),
+        Col::id("robot", |row| row.id),
         Col::f64("sent_s", |row| row.air.sent.as_secs()),
         Col::f64("busy_s", |row| row.air.busy.as_secs()),
         Col::count("frames", |row| row.air.frames),
@@ -46,7 +45,7 @@ pub fn robot_columns() -> Vec<Column<Robot>> {
     columns.extend(
         causes.map(|(place, cause)| Col::count(format!("dropped_{}", cause.name()), move |row| row.air.dropped[place])),
     );
-    let waits: [(&str, Of); 2] = [
+    let waits: [(&str, OfRobot); 2] = [
         ("queue_wait", |robot| robot.queue_wait),
         ("access_delay", |robot| robot.access_delay),
     ];
@@ -90,7 +89,7 @@ pub struct Bucket {
     count: u64,
 }
 
-/// A histogram of a trial.
+/// How a histogram is read off.
 type Histogram = fn(&AirRecord) -> &LatencyHistogram;
 
 /// What frames wait for, and the histogram of it.

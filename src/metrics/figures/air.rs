@@ -8,6 +8,9 @@ use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS};
 use crate::statistics::{Estimator, Part, mean};
 
+/// A time of a robot.
+type Time = fn(&RobotAir) -> Span;
+
 impl Registry {
     /// The same, and the figures of a radio that keeps accounts: of robots that share the air.
     ///
@@ -97,7 +100,7 @@ fn goodput_bps(record: &TrialRecord) -> Option<f64> {
 }
 
 /// Mean over robots.
-fn share_of_time(record: &TrialRecord, time: fn(&RobotAir) -> Span) -> Option<f64> {
+fn share_of_time(record: &TrialRecord, time: Time) -> Option<f64> {
     let all = record.simulated.as_secs();
     let shares: Vec<f64> = robots(record).iter().map(|robot| time(robot).as_secs() / all).collect();
     (all > 0.0).then(|| mean(&shares).value).flatten()

@@ -59,7 +59,7 @@ pub struct SharedConfig {
     pub negligible: NonNegative,
     /// Bytes that every message in a frame carries beside its payload. `None`: one for its topic, if the protocol has more than one, and two for its length where
     /// frames carry several messages.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub message_header_bytes: Option<u16>,
     /// Payload of the lone frame that decides who is in range: two robots are where it would come through half of the time, fading averaged out.
     #[serde(default = "twenty")]

@@ -27,7 +27,7 @@ proptest! {
              path_loss: LogDistance(exponent: 3.0, reference_loss: 40.0), transmit_power: 0.0)"
         );
         let disk = format!("(range: {range:?}, latency: Constant(0.0))");
-        for protocol in ["protocol: Heartbeat, detector: Timeout(0.5), wander: RandomWaypoint(speed: 0.02)", "protocol: Rumor(mode: Push, rounds: Poisson)"] {
+        for protocol in ["protocol: Heartbeat, detector: Timeout(0.5), wander: RandomWaypoint(speed: 0.02)", "protocol: Rumor(mode: Push, rounds: Poisson, completion: Reached)"] {
             let [shared, disk] = [&shared, &disk].map(|radio| run(radio, robots, seed, protocol));
             prop_assert_eq!(&shared.ledger, &disk.ledger);
             prop_assert_eq!(shared.digest, disk.digest, "{} robots, {} m, {}", robots, range, protocol);

@@ -155,5 +155,6 @@ fn saturated_wifi_to_one_robot() {
         throughput(radio, robots, seconds).agrees(&what, expected.0, expected.1, 0.0);
     }
     let g6 = "technology: Wifi(standard: G, rate: 6e6), access: Dcf(slot: 20e-6, window: (15, 1023))";
-    throughput(g6, 10, 20.0).agrees("802.11g", 4.092, 0.037 * FOUR, 0.0);
+    // 1.5 % less than there: as above.
+    throughput(g6, 10, 20.0).agrees("802.11g", 4.092, 0.037 * FOUR, 0.02 * 4.092);
 }
