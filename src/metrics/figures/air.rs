@@ -33,9 +33,6 @@ impl Registry {
     }
 }
 
-/// A time of a robot.
-type Time = fn(&RobotAir) -> Span;
-
 fn declare(registry: &mut Registry) {
     let goodput = ("bit/s", Better::Higher, Estimator::Mean);
     registry.add_plain("goodput_bps", "goodput", goodput, goodput_bps);
