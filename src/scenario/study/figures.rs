@@ -88,7 +88,7 @@ mod tests {
 
     fn over(radio: &str) -> Scenario {
         let text = format!(
-            "Scenario(name: \"a\", swarm: (robots: 3, deploy: Cluster(radius: 0.5)), protocol: Traffic(), radio: ({radio}))"
+            "Scenario(name: \"a\", time_limit: 5.0, swarm: (robots: 3, deploy: Cluster(radius: 0.5)), protocol: Traffic(), radio: ({radio}))"
         );
         crate::scenario::parse("a.ron", &text, &[]).unwrap_or_else(|report| panic!("{report}"))
     }

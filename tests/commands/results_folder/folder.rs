@@ -78,13 +78,16 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
         "bandwidth.parquet",
         "connectivity.parquet",
         "detection.parquet",
+        "distance.parquet",
         "faults.parquet",
         "final_0.svg",
         "frames.parquet",
         "healing.parquet",
         "latency.parquet",
+        "links.parquet",
         "notes.parquet",
         "pairs.parquet",
+        "radio.parquet",
         "robots.parquet",
         "series.parquet",
         "spread.parquet",
@@ -92,6 +95,7 @@ fn finished_trials_are_gone_once_the_tables_hold_them() {
         "trajectories.parquet",
         "trajectories_0.svg",
         "trials.parquet",
+        "waits.parquet",
     ];
     assert_eq!(names, expected);
 }
