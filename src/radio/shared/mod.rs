@@ -6,7 +6,7 @@
 //!
 //! # Cost
 //! Events are a few a frame and none a receiver: medium access, beginning, end, acknowledgement. A burst looks once at each robot that it reaches,
-//! and all questions are answered by one robot's [ear](ear).
+//! and all questions are answered by what one robot's antenna takes up.
 //!
 //! # Randomness
 //! Keyed throughout: bit errors by sender, receiver, frame and attempt; medium access by robot and draw; fields by their place. So what survives at
