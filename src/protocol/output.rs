@@ -57,7 +57,8 @@ impl<M> Output<M> {
 
     /// Sends `message` to the robot `to`, another one of the swarm: the run ends with an error else. It crosses the air as a
     /// broadcast does and arrives at `to` alone, unless robots [overhear](super::Protocol::OVERHEARS). Broadcasts and sends go out in the order in
-    /// which they were said. If `to` is out of range the message is lost and nobody tells: this radio acknowledges nothing.
+    /// which they were said. Whether it arrived nobody tells over the disk radio; what a shared radio knows of it, a robot
+    /// that [heeds outcomes](super::Protocol::HEEDS_OUTCOMES) learns.
     pub fn send(&mut self, to: ActorId, message: M) {
         self.sends.push(Directed {
             to,

@@ -16,10 +16,9 @@
 //! Formulas, each a pure function of what it is handed, for media to be made of: [`propagation`] says what is left of a signal at a receiver, [`technology`] what a radio hears and how long its frames are on air,
 //! and [`Modulation`] how many of their bits go wrong.
 //!
-//! # Room for what is not here
-//! Propagation (path loss, shadowing, walls) replaces the disk: [`Reach::Links`] then says who counts as in range of whom, for all of a run. What overlaps where follows from the places
-//! of senders and listeners, which frames come with, and of all others ([`Places`]), not from who is offered what: a robot jams also those that it says nothing to. Each new reason for a loss is one more
-//! [`LossCause`]. What a sender learns of a frame to one robot ([`Transmission::to`]) is one more thing that [`Medium::advance`] may say of it.
+//! # The shared radio
+//! [`SharedConfig`] describes it, and [`Shared`] is the medium on which frames take time and meet: its module has the whole. [`Reach::Links`] says who counts as in range of whom, for all of
+//! a run. What overlaps where follows from the places of all robots ([`Places`]), not from who is offered what: a robot jams also those that it says nothing to.
 
 mod config;
 mod disk;

@@ -7,7 +7,6 @@ use super::Shared;
 use super::agenda::Task;
 use super::station::Doing;
 use crate::engine::{ActorId, SimTime, Span};
-use crate::quantity::NonNegative;
 use crate::radio::Account;
 use crate::radio::technology::Supply;
 
@@ -27,23 +26,15 @@ impl Shared {
         let received = ear.frames.by(now);
         let off = radio.off + now.since(radio.off_since);
         let listened = now.since(SimTime::ZERO).less(off + sent + received + radio.turned);
-        let Supply {
-            volts,
-            send,
-            receive,
-            listen,
-            turnaround,
-            ..
-        } = self.phy.supply;
-        let joules = |amperes: NonNegative, span: Span| volts.get() * amperes.get() * span.as_secs();
+        let [sending, receiving, listening, turning] = watts(&self.phy.supply);
         Account {
             sent,
             busy: ear.busy.by(now),
             energy: [
-                joules(send, sent),
-                joules(receive, received),
-                joules(listen, listened),
-                joules(turnaround, radio.turned),
+                sending * sent.as_secs(),
+                receiving * received.as_secs(),
+                listening * listened.as_secs(),
+                turning * radio.turned.as_secs(),
             ],
             empty_at: Some(radio.empty_at).filter(|at| *at < SimTime::NEVER),
         }
@@ -66,20 +57,17 @@ impl Shared {
             self.radios[robot.index()].empty_at = now;
             return true;
         }
-        let Supply {
-            volts,
-            send,
-            receive,
-            listen,
-            turnaround,
-            ..
-        } = self.phy.supply;
-        let most = [send, receive, listen, turnaround].map(NonNegative::get);
-        let watts = volts.get() * most.into_iter().fold(0.0, f64::max);
-        if watts > 0.0 {
-            let earliest = Span::from_secs(left / watts).max(PATIENCE);
+        let most = watts(&self.phy.supply).into_iter().fold(0.0, f64::max);
+        if most > 0.0 {
+            let earliest = Span::from_secs(left / most).max(PATIENCE);
             self.agenda.add(now + earliest, Task::Battery(robot.0));
         }
         false
     }
+}
+
+/// What a radio draws while it sends, receives, listens and turns around, watts.
+fn watts(supply: &Supply) -> [f64; 4] {
+    let amperes = [supply.send, supply.receive, supply.listen, supply.turnaround];
+    amperes.map(|amperes| supply.volts.get() * amperes.get())
 }

@@ -347,6 +347,7 @@ impl Shared {
         match radio.doing {
             Doing::Sends(id) => {
                 if let Some(burst) = self.bursts.get_mut(id) {
+                    radio.sent = radio.sent.less(burst.ends.since(now));
                     burst.cut = true;
                     burst.ends = now;
                 }
