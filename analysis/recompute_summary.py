@@ -590,6 +590,7 @@ class Folder:
             weight = sum(count for count, _ in known)
             return total(count * power for count, power in known) / weight if weight else None
 
+        delivered = dict(self.frames.group_by("trial").agg(pl.col("delivered").sum()).iter_rows())
         states = [column for column in robots.columns if column.startswith("energy_")]
         spent = [[total(row) for row in rows.select(states).iter_rows()] for rows, _ in trials]
         causes = [column for column in robots.columns if column.startswith("dropped_")]
@@ -609,6 +610,7 @@ class Folder:
                 "attempts": of_sums("attempts", lambda rows: rows["on_air"].sum(), "mean"),
                 "unacknowledged": of_sums("unacknowledged", lambda rows: rows["unacknowledged"].sum() + rows["acknowledged"].sum(), "share of things"),
                 "dropped": of_sums(lambda rows: rows["frames"].sum() - rows["on_air"].sum(), lambda rows: rows["frames"].sum(), "share of things"),
+                "strayed": of_sums("strayed", lambda rows: rows["strayed"].sum() + delivered[rows["trial"][0]], "share of things"),
                 "energy_J": energy,
                 "power_dBm": mean([heard(rows) for rows, _ in trials], "signed"),
                 "sending": {**{name: robots[name].sum() for name in counts}, "dropped": {column.removeprefix("dropped_"): robots[column].sum() for column in causes}},

@@ -96,6 +96,10 @@ pub trait Observer {
     #[inline]
     fn delivered(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {}
 
+    /// A robot that counted as out of range got a copy all the same, at `at`, and read it at `read`, if it did before the run ended. It was offered to nobody: it is neither
+    /// among those [delivered](Self::delivered) nor among those lost.
+    fn strayed(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {}
+
     /// A copy is still under way when the run ends, and would have arrived at `at`; `None` if not even the radio knows whether it would have.
     fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {}
 

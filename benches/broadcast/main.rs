@@ -4,6 +4,8 @@
 //! status every 0.1 s at a phase of its own. A copy is lost with probability 0.2, or arrives after a truncated normal
 //! latency. A neighbour not heard for 1.0 s is suspected at that very instant.
 //!
+//! The same status over 802.15.4 on real air stands beside it: 50 robots in one cell, and 12 neighbours again.
+//!
 //! `cargo bench` runs each program in a process of its own, in turn, several times, and prints the least of each and the
 //! ratios of those. `cargo bench -- --rounds 15` for more rounds.
 
@@ -16,7 +18,7 @@ mod workload;
 use desim::simulation::DriverKind;
 use measure::Sample;
 use mimalloc::MiMalloc;
-use workload::{Counts, Workload};
+use workload::{CELL_ROBOTS, Counts, Workload};
 
 /// The allocator of the `desim` command, for every program here.
 #[global_allocator]
@@ -51,6 +53,11 @@ fn run_one(program: &str, robots: u32) -> Sample {
         "bare" => broadcast(bare::run),
         "inline" => broadcast(|workload| swarm::run(workload, DriverKind::Inline)),
         "actors" => broadcast(|workload| swarm::run(workload, DriverKind::Actors)),
+        "disk" => measure::sample(|| swarm::run(&Workload::cell_over_disk(robots), DriverKind::Inline)),
+        "air" if robots == CELL_ROBOTS => {
+            measure::sample(|| swarm::run(&Workload::cell_over_air(robots), DriverKind::Inline))
+        }
+        "air" => measure::sample(|| swarm::run(&Workload::field_over_air(robots), DriverKind::Inline)),
         "trial, inline" => measure::sample(|| trial::run(DriverKind::Inline)),
         "trial, actors" => measure::sample(|| trial::run(DriverKind::Actors)),
         other => panic!("no program is called `{other}`"),
@@ -78,6 +85,7 @@ fn compare(rounds: usize) {
             );
         }
     }
+    over_air(rounds);
     println!("\nthe paper's 80-robot trial with 4 links (scenarios/paper/completion_80x4.ron, trial 0)");
     for (program, samples) in TRIALS.iter().zip(measure::rounds(rounds, &TRIALS, trial::ROBOTS)) {
         println!(
@@ -87,5 +95,26 @@ fn compare(rounds: usize) {
             1e3 / measure::least(&samples),
             samples[0].simulated_s,
         );
+    }
+}
+
+/// The shared radio: beside a disk where all hear each other, and by how much it grows with the swarm.
+fn over_air(rounds: usize) {
+    println!("\n802.15.4 with log-distance path loss, shadowing and Rayleigh fading, a status every 0.1 s, inline");
+    let line = |robots: u32, program: &str, samples: &[Sample], against: f64, of: &str| {
+        let (deliveries, nanos) = (samples[0].deliveries, measure::least(samples));
+        let ratio = nanos / against;
+        println!("{robots:>7}  {program:7} {deliveries:>11} {nanos:>12.0} {ratio:>7.2}x {of}");
+        nanos
+    };
+    let cell = measure::rounds(rounds, &["disk", "air"], CELL_ROBOTS);
+    let disk = measure::least(&cell[0]);
+    line(CELL_ROBOTS, "disk", &cell[0], disk, "of the disk, all in one cell");
+    line(CELL_ROBOTS, "air", &cell[1], disk, "of the disk");
+    let mut least = None;
+    for robots in [1_280, 20_480] {
+        let samples = &measure::rounds(rounds, &["air"], robots)[0];
+        let against = *least.get_or_insert(measure::least(samples));
+        line(robots, "air", samples, against, "of 1280, 12 neighbours");
     }
 }

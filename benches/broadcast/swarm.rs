@@ -1,6 +1,7 @@
 //! The same workload as a user would run it: the library's heartbeat protocol over its radio.
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use desim::engine::{ActorId, Span, Streams};
 use desim::kinds::heartbeat::{Heartbeat, Settings};
@@ -9,15 +10,12 @@ use desim::motion::MotionConfig;
 use desim::protocol::control::{ControlConfig, PhaseConfig};
 use desim::protocol::detector::DetectorConfig;
 use desim::protocol::gossip::GossipConfig;
-use desim::quantity::{NonNegative, Positive, Probability};
-use desim::radio::{DiskConfig, LatencyConfig, LossConfig};
+use desim::quantity::{NonNegative, Positive};
+use desim::radio::RadioKind;
 use desim::simulation::{DriverKind, Setup};
 use tokio_util::sync::CancellationToken;
 
-use crate::workload::{
-    BODY_RADIUS_M, Counts, LATENCY_MEAN_S, LATENCY_MIN_S, LATENCY_STD_DEV_S, LOSS_PROBABILITY, PERIOD_S, RANGE_M, SEED,
-    TIMEOUT_S, Workload,
-};
+use crate::workload::{BODY_RADIUS_M, Counts, PERIOD_S, SEED, TIMEOUT_S, Workload};
 
 pub fn run(workload: &Workload, driver: DriverKind) -> Counts {
     let setup = setup(workload);
@@ -59,16 +57,11 @@ fn setup(workload: &Workload) -> Setup {
             phase: PhaseConfig::Random,
             ..ControlConfig::default()
         },
-        radio: DiskConfig {
-            range: Positive::new(RANGE_M),
-            loss: LossConfig::Bernoulli(Probability::new(LOSS_PROBABILITY)),
-            latency: LatencyConfig::Normal {
-                mean: NonNegative::new(LATENCY_MEAN_S),
-                std_dev: NonNegative::new(LATENCY_STD_DEV_S),
-                min: NonNegative::new(LATENCY_MIN_S),
-            },
-            ..DiskConfig::default()
-        },
+        radio: workload.radio.disk().into_owned(),
+        own_radio: workload
+            .radio
+            .shared()
+            .map(|shared| Arc::new(shared.clone()) as Arc<dyn RadioKind>),
         // Connectivity is no part of the workload.
         metrics: MetricsConfig {
             sample_interval: NonNegative::new(0.0),

@@ -3,7 +3,10 @@
 use desim::engine::Streams;
 use desim::geometry::Pose;
 use desim::motion::{ArenaConfig, DeployConfig, deploy};
-use desim::quantity::Positive;
+use desim::quantity::{Finite, NonNegative, Positive, Probability};
+use desim::radio::propagation::{FadingConfig, LogDistanceConfig, PathLossConfig, ShadowingConfig};
+use desim::radio::shared::{AccessConfig, CsmaCaConfig};
+use desim::radio::{DiskConfig, LatencyConfig, LossConfig, RadioConfig, SharedConfig, TechnologyConfig};
 
 const NEIGHBOURS: f64 = 12.0;
 
@@ -14,14 +17,21 @@ pub const LATENCY_STD_DEV_S: f64 = 0.003;
 pub const LATENCY_MIN_S: f64 = 0.001;
 pub const PERIOD_S: f64 = 0.1;
 pub const TIMEOUT_S: f64 = 1.0;
+/// Of a square whose robots all hear each other, and with what they then send over the air.
+pub const CELL_ROBOTS: u32 = 50;
+const CELL_SIDE_M: f64 = 10.0;
+const CELL_DBM: f64 = 0.0;
+/// With this a robot has 12 neighbours over the air as with a disk of [`RANGE_M`].
+const FIELD_DBM: f64 = -47.0;
 /// Small, so that places are uniform: bodies do not overlap.
 pub const BODY_RADIUS_M: f64 = 0.01;
 pub const SEED: u64 = 7;
 
-/// Where the robots are and for how long they talk.
+/// Where the robots are, by what they talk and for how long.
 pub struct Workload {
     pub arena: ArenaConfig,
     pub poses: Vec<Pose>,
+    pub radio: RadioConfig,
     pub seconds: f64,
 }
 
@@ -33,8 +43,43 @@ pub struct Counts {
 }
 
 impl Workload {
+    /// Robots with 12 neighbours each, over a disk that loses and delays.
     pub fn new(robots: u32) -> Self {
-        let side_m = side(robots);
+        let radio = DiskConfig {
+            range: Positive::new(RANGE_M),
+            loss: LossConfig::Bernoulli(Probability::new(LOSS_PROBABILITY)),
+            latency: LatencyConfig::Normal {
+                mean: NonNegative::new(LATENCY_MEAN_S),
+                std_dev: NonNegative::new(LATENCY_STD_DEV_S),
+                min: NonNegative::new(LATENCY_MIN_S),
+            },
+            ..DiskConfig::default()
+        };
+        Self::of(robots, side(robots), RadioConfig::Disk(radio))
+    }
+
+    /// Robots that all hear each other, over a disk: copies arrive at once, and all of them.
+    pub fn cell_over_disk(robots: u32) -> Self {
+        let radio = DiskConfig {
+            range: Positive::new(CELL_SIDE_M * 2.0),
+            loss: LossConfig::None,
+            latency: LatencyConfig::Constant(NonNegative::new(0.0)),
+            ..DiskConfig::default()
+        };
+        Self::of(robots, CELL_SIDE_M, RadioConfig::Disk(radio))
+    }
+
+    /// The same robots over 802.15.4 with all that air does.
+    pub fn cell_over_air(robots: u32) -> Self {
+        Self::of(robots, CELL_SIDE_M, air(CELL_DBM))
+    }
+
+    /// Robots with 12 neighbours each over 802.15.4.
+    pub fn field_over_air(robots: u32) -> Self {
+        Self::of(robots, side(robots), air(FIELD_DBM))
+    }
+
+    fn of(robots: u32, side_m: f64, radio: RadioConfig) -> Self {
         let side = Positive::new(side_m);
         let arena = ArenaConfig {
             size: (side, side),
@@ -50,8 +95,34 @@ impl Workload {
         .expect("a square of this density has room");
         along_a_curve(&mut poses, side_m);
         let seconds = if robots < 1_280 { 60.0 } else { 6.0 };
-        Self { arena, poses, seconds }
+        Self {
+            arena,
+            poses,
+            radio,
+            seconds,
+        }
     }
+}
+
+/// Unacknowledged 802.15.4 at so many dBm, with path loss, shadowing and fading.
+fn air(dbm: f64) -> RadioConfig {
+    let access = AccessConfig::CsmaCa(CsmaCaConfig {
+        acknowledge: false,
+        ..CsmaCaConfig::default()
+    });
+    RadioConfig::Shared(Box::new(SharedConfig {
+        access: Some(access),
+        transmit_power: Some(Finite::new(dbm)),
+        path_loss: PathLossConfig::LogDistance(LogDistanceConfig {
+            exponent: Positive::new(3.0),
+            ..LogDistanceConfig::default()
+        }),
+        shadowing: Some(ShadowingConfig::default()),
+        fading: FadingConfig::Rayleigh {
+            doppler: NonNegative::new(0.0),
+        },
+        ..SharedConfig::of(TechnologyConfig::default())
+    }))
 }
 
 /// Numbers robots along a Z-order curve, so that those that are near each other have near numbers: the bare loop keeps what it

@@ -1,6 +1,7 @@
 //! Time, the event queue, random streams, and actors. This floor knows nothing of robots.
 
 mod actors;
+mod clocks;
 mod inline;
 mod mailbox;
 mod prefetch;
@@ -11,6 +12,7 @@ mod runtime;
 mod time;
 
 pub use actors::Actors;
+pub use clocks::Clocks;
 pub use inline::Inline;
 pub use prefetch::{outgrows_cache, prefetch, prefetch_all, prefetch_end};
 pub use process::{ActorId, Driver, Job, JobOf, Process};

@@ -55,6 +55,10 @@ macro_rules! hand_on {
             $tell!(self, delivered(copy, at, read));
         }
 
+        fn strayed(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {
+            $tell!(self, strayed(copy, at, read));
+        }
+
         #[inline]
         fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
             $tell!(self, in_flight(copy, at));

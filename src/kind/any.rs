@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 
-use super::{Expected, InPieces, Kind, Problem, Sections, Shared, Start, Swarm, Targets};
+use super::{Broadcasts, Expected, InPieces, Kind, Problem, Sections, Shared, Start, Swarm, Targets};
 use crate::metrics::{NotedFigure, TrialRecord};
 use crate::protocol::detector::DetectorConfig;
 use crate::protocol::{CompletionConfig, Protocol};
@@ -47,6 +47,7 @@ pub trait AnyKind: Any + Debug + Send + Sync + erased_serde::Serialize {
     fn relays_in_steps(&self) -> bool;
     fn status_bytes(&self) -> Option<f64>;
     fn sends_statuses_alone(&self, sections: &Sections<'_>) -> bool;
+    fn broadcasts(&self, sections: &Sections<'_>) -> Option<Broadcasts>;
     fn predict(&self, sections: &Sections<'_>) -> Expected;
     fn figures(&self) -> Vec<NotedFigure>;
 }
@@ -161,6 +162,10 @@ impl<K: Kind> AnyKind for K {
 
     fn sends_statuses_alone(&self, sections: &Sections<'_>) -> bool {
         Kind::sends_statuses_alone(self, sections)
+    }
+
+    fn broadcasts(&self, sections: &Sections<'_>) -> Option<Broadcasts> {
+        Kind::broadcasts(self, sections)
     }
 
     fn predict(&self, sections: &Sections<'_>) -> Expected {

@@ -85,7 +85,7 @@ use serde::de::DeserializeOwned;
 
 pub use any::{AnyKind, Entry, ReadConfig, RonReader};
 pub use mission::{Goal, InPieces, Targets};
-pub use prediction::{Expected, Holds, Prediction, Unpredicted};
+pub use prediction::{Broadcasts, Expected, Holds, Prediction, Unpredicted};
 pub use problem::Problem;
 pub use sections::{Sections, Swarm};
 pub use shared::Shared;
@@ -232,6 +232,13 @@ pub trait Kind: Clone + Debug + PartialEq + Serialize + DeserializeOwned + JsonS
     fn sends_statuses_alone(&self, sections: &Sections<'_>) -> bool {
         let _ = sections;
         false
+    }
+
+    /// The one steady stream that robots send, if they send nothing beside: for what closed forms say of the air. Kinds that send statuses
+    /// [alone](Self::sends_statuses_alone) need not say it again.
+    fn broadcasts(&self, sections: &Sections<'_>) -> Option<Broadcasts> {
+        let _ = sections;
+        None
     }
 
     /// What closed forms say of a run, beside what they say of every swarm.

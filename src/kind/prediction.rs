@@ -67,3 +67,16 @@ impl Expected {
         self
     }
 }
+
+/// Broadcasts of one length that robots send at one rate, and nothing else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Broadcasts {
+    /// The share of robots that send.
+    pub sending: f64,
+    /// Messages a second of each of them.
+    pub per_second: f64,
+    /// Payload bytes of a message.
+    pub payload: f64,
+    /// Whether their instants are independent of each other's.
+    pub scattered: bool,
+}

@@ -29,6 +29,8 @@ pub struct World {
     drives: Vec<Drive>,
     /// Whether a robot changes place on the way to the next tick.
     moving: bool,
+    /// In how many ticks any robot has changed place.
+    moves: u32,
     /// Whether a drive does anything at all, or will at the next tick.
     stirring: bool,
     movers: Vec<u32>,
@@ -69,6 +71,7 @@ impl World {
             velocities: vec![Vec2::zeros(); robots],
             drives,
             moving: false,
+            moves: 0,
             stirring: false,
             movers: Vec::new(),
             contacts: Contacts::new(robots, body_radius, tick.as_secs(), max_speed),
@@ -132,6 +135,12 @@ impl World {
     #[must_use]
     pub fn is_moving(&self) -> bool {
         self.moving
+    }
+
+    /// While nobody moves, a number that is another after anybody has: as long as it is the same, everybody is where they were.
+    #[must_use]
+    pub fn standing(&self) -> Option<u32> {
+        (!self.moving).then_some(self.moves)
     }
 
     /// How far a robot gets from one tick to the next at most, metres.
@@ -246,6 +255,7 @@ impl World {
     /// Carries every robot to the end of the tick. Whether any changed place.
     fn travel(&mut self) -> bool {
         if self.moving {
+            self.moves += 1;
             let tick = self.tick.as_secs();
             for (position, velocity) in self.positions.iter_mut().zip(&self.velocities) {
                 *position += velocity * tick;

@@ -1,29 +1,160 @@
-//! What closed forms still say where all robots share the air: what is sent, not what becomes of it.
+//! What closed forms say where all robots share the air: what is sent, how full that makes the channel, what it costs; and, where all hear each other, who sends
+//! at the same time.
 
-use super::Preflight;
 use super::scene::Scene;
+use super::{Holds, Prediction, Preflight};
 use super::{swarm, traffic};
-use crate::radio::WallsConfig;
+use crate::kind::Broadcasts;
+use crate::radio::propagation::FadingConfig;
+use crate::radio::shared::{Form, Stream};
+use crate::radio::{SharedConfig, WallsConfig};
+
+const OVERLAPS: &str = "frames on air with others";
+const ENERGY: &str = "energy of a radio";
 
 pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
     let Some(radio) = scene.scenario.radio.shared() else {
         return;
     };
-    let in_the_way = radio.walls != WallsConfig::Pass && !scene.scenario.arena.obstacles.is_empty();
-    let is_uneven =
-        radio.shadowing.is_some() || radio.transmit_power_spread.get() + radio.antenna_gain_spread.get() > 0.0;
-    if in_the_way || is_uneven {
+    if is_even(scene, radio) {
+        swarm::predict(scene, preflight);
+    } else {
         let why = "who is in range follows from walls, shadowing or powers that differ, and not from distances alone";
         preflight.refuse("degree", "neighbours", why);
-    } else {
-        swarm::predict(scene, preflight);
     }
     match scene.unmeasured() {
         None => traffic::sent(scene, preflight),
+        Some(_) if scene.broadcasts().is_some() => {}
         Some(why) => preflight.refuse("status_tx_bytes_per_step", "status bytes", why),
+    }
+    if let Some(broadcasts) = scene.broadcasts() {
+        sent(scene, radio, broadcasts, preflight);
+        met(scene, radio, broadcasts, preflight);
+    } else {
+        let why = "robots send more than one steady stream of equal broadcasts: run it";
+        preflight.refuse("radio.airtime_share", "airtime, share of the channel, energy", why);
     }
     preflight.not_predicted.append(&mut scene.expected.unpredicted.clone());
     let why =
         "what is lost, when it arrives and what a detector makes of it follow from who sends at the same time: run it";
     preflight.refuse("loss_ratio", "copies lost, latency, mistakes", why);
+}
+
+/// Whether who is in range is a matter of distances alone.
+fn is_even(scene: &Scene<'_>, radio: &SharedConfig) -> bool {
+    let in_the_way = radio.walls != WallsConfig::Pass && !scene.scenario.arena.obstacles.is_empty();
+    let differ = radio.transmit_power_spread.get() + radio.antenna_gain_spread.get() > 0.0;
+    !in_the_way && !differ && radio.shadowing.is_none()
+}
+
+/// The stream of `senders` robots, as frames.
+fn stream(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, senders: f64) -> Stream {
+    let header = scene.scenario.radio.disk().message_header_bytes;
+    let header = radio.message_header_bytes.unwrap_or(header);
+    Stream {
+        senders,
+        per_second: broadcasts.per_second,
+        payload: broadcasts.payload as u32 + u32::from(header),
+    }
+}
+
+/// What follows from what is sent alone.
+fn sent(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, preflight: &mut Preflight) {
+    let stream = stream(scene, radio, broadcasts, 1.0);
+    let airtime = radio.airtime_s(stream.payload);
+    let mut push = |name, what, unit, form: Form, assumes: &str| {
+        preflight.predictions.push(Prediction {
+            name,
+            what,
+            value: form.value,
+            unit,
+            accuracy: form.accuracy,
+            holds: Holds::Throughout,
+            formula: form.formula,
+            assumes: assumes.into(),
+        });
+    };
+    let exact = |value, formula| Form {
+        value,
+        accuracy: 0.0,
+        formula,
+    };
+    let form = exact(airtime, "the technology's layout of a frame");
+    push("airtime_s", "airtime of a frame", "s", form, "on all its channels together");
+    let capacity = radio.capacity(stream);
+    push(
+        "capacity_robots",
+        "senders that fill the channel",
+        "robots",
+        capacity,
+        "in range of each other; what is lost to overlaps makes it fewer by far",
+    );
+    let share = broadcasts.sending * broadcasts.per_second * airtime;
+    if broadcasts.per_second * airtime < 1.0 {
+        let form = Form {
+            // A trial has a frame of each robot more than whole intervals, or less.
+            accuracy: airtime / scene.duration_s,
+            ..exact(share, "λT")
+        };
+        let assumes = "of a robot, none of which fails; frames that are never sent make it less";
+        push("radio.airtime_share", "time that a robot sends", "1", form, assumes);
+    }
+}
+
+/// What follows where all robots hear each other, and each frame has its instant to itself or not by chance.
+fn met(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, preflight: &mut Preflight) {
+    let others = f64::from(scene.scenario.swarm.robots) - 1.0;
+    let hears = preflight.get("degree").map_or(0.0, |degree| degree.value);
+    let why = if radio.fading != FadingConfig::None || hears < others * (1.0 - 1e-9) {
+        Some("not all robots hear each other all the time: who is hidden from whom decides")
+    } else if !scene.stands_still() {
+        Some("robots move, and need not stay in range of each other")
+    } else if !broadcasts.scattered {
+        Some("all robots send at once: what becomes of that is decided by medium access alone")
+    } else {
+        None
+    };
+    if let Some(why) = why {
+        preflight.refuse("overlap_ratio", OVERLAPS, why);
+        return preflight.refuse("radio.energy_J", ENERGY, why);
+    }
+    let stream = stream(scene, radio, broadcasts, broadcasts.sending * (others + 1.0));
+    let prediction = |name, what, unit, form: Form, assumes: &str| Prediction {
+        name,
+        what,
+        value: form.value,
+        unit,
+        accuracy: form.accuracy,
+        holds: Holds::Throughout,
+        formula: form.formula,
+        assumes: assumes.into(),
+    };
+    match radio.clean(stream) {
+        Some(clean) => {
+            let overlap = Form {
+                value: 1.0 - clean.value,
+                ..clean
+            };
+            let assumes = "one less the form; with `capture: inf` that is what is lost, with capture less";
+            let overlap = prediction("overlap_ratio", OVERLAPS, "1", overlap, assumes);
+            preflight.predictions.push(overlap);
+        }
+        None => preflight.refuse("overlap_ratio", OVERLAPS, "no closed form holds for this medium access at this load"),
+    }
+    match radio.mean_watts(stream, broadcasts.sending) {
+        Some(watts) => {
+            let energy = Form {
+                value: watts.value * scene.duration_s,
+                accuracy: watts.accuracy * scene.duration_s + watts.value * radio.airtime_s(stream.payload),
+                ..watts
+            };
+            let assumes = "of a robot; P of listening, sending, turning round and receiving, times the trial's length";
+            preflight.predictions.push(prediction("radio.energy_J", ENERGY, "J", energy, assumes));
+        }
+        None => preflight.refuse(
+            "radio.energy_J",
+            ENERGY,
+            "the channel is so full that frames wait, or the technology says nothing of what it draws",
+        ),
+    }
 }

@@ -39,7 +39,7 @@ pub fn surprises(scenario: &Scenario, summary: &Summary) -> Vec<Surprise> {
     let compared: Vec<(&Prediction, Estimate)> = preflight
         .predictions
         .iter()
-        .filter_map(|prediction| Some((prediction, compared(prediction, summary)?)))
+        .filter_map(|prediction| Some((prediction, compared(prediction, scenario, summary)?)))
         .collect();
     let family = compared.len();
     compared
@@ -54,7 +54,7 @@ pub fn surprises(scenario: &Scenario, summary: &Summary) -> Vec<Surprise> {
 }
 
 /// The figure that `prediction` is about, if it should hold for the run.
-fn compared(prediction: &Prediction, summary: &Summary) -> Option<Estimate> {
+fn compared(prediction: &Prediction, scenario: &Scenario, summary: &Summary) -> Option<Estimate> {
     let detection = &summary.detection;
     // Detectors are judged by the time in which robots are in range of each other, so that what holds of those holds of the run.
     let holds = match prediction.holds {
@@ -65,6 +65,9 @@ fn compared(prediction: &Prediction, summary: &Summary) -> Option<Estimate> {
     let made = mistakes >= FEWEST_MISTAKES;
     let measured = match prediction.name {
         "loss_ratio" => Some(lost(summary)),
+        "overlap_ratio" if overlaps_are_lost(scenario) => Some(lost(summary)),
+        "radio.airtime_share" => summary.radio.as_ref().map(|radio| radio.airtime_share.estimate),
+        "radio.energy_J" => summary.radio.as_ref().map(|radio| radio.energy.estimate),
         "latency_s" => Some(summary.latency_s.mean),
         "status_tx_bytes_per_step" => Some(status(summary)?.directions.tx_bytes_per_step.mean),
         "status_rx_bytes_per_step" => Some(status(summary)?.directions.rx_bytes_per_step.mean),
@@ -78,6 +81,12 @@ fn compared(prediction: &Prediction, summary: &Summary) -> Option<Estimate> {
         _ => None,
     };
     measured.filter(|_| holds)
+}
+
+/// Whether whatever overlaps is lost.
+fn overlaps_are_lost(scenario: &Scenario) -> bool {
+    let radio = scenario.radio.shared();
+    radio.is_some_and(|radio| radio.phy().capture == Some(f64::INFINITY))
 }
 
 /// The share of copies lost.

@@ -1,8 +1,9 @@
 //! What several predictions need to know of a scenario.
 
 use crate::engine::Span;
-use crate::kind::{Expected, Shared};
+use crate::kind::{Broadcasts, Expected, Shared};
 use crate::motion::Spacing;
+use crate::protocol::control::PhaseConfig;
 use crate::protocol::gossip::{SendConfig, Timing};
 use crate::radio::LossConfig;
 use crate::scenario::Scenario;
@@ -85,6 +86,21 @@ impl<'a> Scene<'a> {
     /// η, seconds from one status of a robot to the next.
     pub fn interval_s(&self) -> f64 {
         self.steps_a_status() * self.period_s()
+    }
+
+    /// The one steady stream that robots send, if they send nothing beside.
+    pub fn broadcasts(&self) -> Option<Broadcasts> {
+        let (protocol, sections) = (&self.scenario.protocol, self.scenario.sections());
+        if let Some(broadcasts) = protocol.broadcasts(&sections) {
+            return Some(broadcasts);
+        }
+        let alone = self.unmeasured().is_none() && self.sends_statuses_alone();
+        alone.then(|| Broadcasts {
+            sending: 1.0,
+            per_second: 1.0 / self.interval_s(),
+            payload: protocol.status_bytes().unwrap_or(0.0),
+            scattered: self.scenario.control.phase == PhaseConfig::Random,
+        })
     }
 
     /// Bytes of a status, headers included.

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, KeyedStreams, Purpose, Span, Streams};
-use crate::quantity::Positive;
+use crate::quantity::{NonNegative, Positive};
 
 /// Where a rhythm begins, by robot and rhythm: one word.
 const PHASE: Purpose = Purpose::new("control.phase");
@@ -19,6 +19,9 @@ pub struct ControlConfig {
     pub phase: PhaseConfig,
     /// What wakes a robot beside its control step and its timers.
     pub wake: WakeConfig,
+    /// By how many parts in a million the clock of a robot is fast or slow at most: drawn once a robot and trial, evenly. Control steps, timers, the times that it
+    /// reads and sends, and slots of its radio go by it. Crystals are within 10 to 50; 0: all clocks are right.
+    pub clock_drift: NonNegative,
 }
 
 impl Default for ControlConfig {
@@ -27,6 +30,7 @@ impl Default for ControlConfig {
             period: Positive::new(0.1),
             phase: PhaseConfig::Random,
             wake: WakeConfig::ControlStep,
+            clock_drift: NonNegative::new(0.0),
         }
     }
 }
@@ -36,6 +40,12 @@ impl ControlConfig {
     #[must_use]
     pub fn period(&self) -> Span {
         Span::from_secs(self.period.get())
+    }
+
+    /// By what share clocks are fast or slow at most.
+    #[must_use]
+    pub fn drift(&self) -> f64 {
+        self.clock_drift.get() * 1e-6
     }
 }
 

@@ -94,7 +94,7 @@ pub struct Frame<M> {
     pub sender: ActorId,
     /// Its number among the sender's messages, which is that of its frame where each has one of its own.
     pub sequence: u32,
-    /// When it was sent.
+    /// When it was sent, by its sender's clock.
     pub sent_at: SimTime,
     /// Its payload in bytes, headers not included.
     pub payload_bytes: u16,
@@ -102,6 +102,8 @@ pub struct Frame<M> {
     pub rides: bool,
     /// Whom it is for.
     pub address: Address,
+    /// Whether its receiver counted as out of range, and got it all the same. Metrics count that apart; a robot cannot know.
+    pub beyond: bool,
     /// What its payload says.
     pub message: M,
 }
@@ -132,7 +134,7 @@ pub enum Address {
 /// A frame that reached this robot.
 #[derive(Debug)]
 pub struct Reception<M> {
-    /// When it arrived.
+    /// When it arrived, by this robot's clock.
     pub at: SimTime,
     /// The frame.
     pub frame: Frame<M>,

@@ -9,7 +9,7 @@ use std::fmt::Debug;
 
 use tokio_util::codec::{Decoder, Encoder};
 
-use crate::engine::{Process, SimTime};
+use crate::engine::SimTime;
 use detector::DetectorConfig;
 
 mod codec;
@@ -20,6 +20,7 @@ pub mod gossip;
 mod input;
 mod names;
 mod output;
+mod robot;
 pub mod robot_table;
 pub mod wander;
 
@@ -28,6 +29,7 @@ pub use completion::CompletionConfig;
 pub use input::{Address, Concluded, Frame, Input, Reception, Start, Wake};
 pub use names::{MessageSize, Role, TimerId, Topic};
 pub use output::{Directed, Evidence, Note, Output};
+pub use robot::Robot;
 
 /// A protocol as one robot runs it: [the crate's page](crate#write-it) writes, tests and runs a whole one.
 ///
@@ -88,23 +90,7 @@ pub trait Protocol: Sized + 'static {
     fn prefetch(&self) {}
 
     /// Takes one step: reads `input`, fills `output`, which is empty. Called at each wake, of which [`Input::wake`] says why; the
-    /// robot is not asked again before its next one.
+    /// robot is not asked again before its next one. `now` is what its clock shows, which may
+    /// [drift](control::ControlConfig::clock_drift).
     fn step(&mut self, now: SimTime, input: &mut Input<Self::Heard>, output: &mut Output<Self::Message>);
-}
-
-/// A robot: a protocol that an engine's driver can run.
-#[derive(Debug)]
-pub struct Robot<P>(pub P);
-
-impl<P: Protocol> Process for Robot<P> {
-    type Input = Input<P::Heard>;
-    type Output = Output<P::Message>;
-
-    fn prefetch(&self) {
-        self.0.prefetch();
-    }
-
-    fn handle(&mut self, now: SimTime, input: &mut Self::Input, output: &mut Self::Output) {
-        self.0.step(now, input, output);
-    }
 }

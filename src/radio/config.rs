@@ -85,13 +85,13 @@ impl RadioConfig {
         self.shared().map_or(0.0, |shared| shared.most_frames_a_second(payload))
     }
 
-    /// What is wrong between fields that are each in range, for a swarm of so many robots: the path of the field at fault, from this section on, and
+    /// What is wrong between fields that are each in range, for a swarm of so many robots whose clocks are fast or slow by up to a share of `drift`: the path of the field at fault, from this section on, and
     /// what is wrong with it and would be right. Empty if the radio can be built.
     #[must_use]
-    pub fn problems(&self, robots: u32) -> Vec<(String, String)> {
+    pub fn problems(&self, robots: u32, drift: f64) -> Vec<(String, String)> {
         match self {
             Self::Disk(config) => config.problems(),
-            Self::Shared(config) => config.problems(robots),
+            Self::Shared(config) => config.problems(robots, drift),
         }
     }
 }

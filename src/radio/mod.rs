@@ -45,7 +45,7 @@ pub use medium::{
     Account, Conclusion, Fate, Fates, FrameId, Listener, Medium, Outcome, RadioKind, Reading, Transmission,
 };
 pub use modulation::{ErrorTable, Modulation};
-pub use reach::{Links, Placed, Reach};
+pub use reach::{Contact, Links, Placed, Reach};
 pub use shared::{Shared, SharedConfig};
 pub use site::{Obstacle, Places, RadioSite, Shape};
 pub use technology::{Phy, Section, TechnologyConfig, Waveform};

@@ -29,6 +29,31 @@ pub trait Links: Debug + Send + Sync {
     /// Whether `to` is in range of what `from` sends. The same ends at the same places always get the same answer; the two directions
     /// of a link may differ.
     fn connects(&self, from: Placed, to: Placed) -> bool;
+
+    /// No robot farther away than this hears anything, metres: robots that count as out of range may hear a frame now and then.
+    fn earshot(&self) -> f64 {
+        self.farthest()
+    }
+
+    /// The same as [`connects`](Self::connects), and whether robots out of range may hear all the same.
+    fn contact(&self, from: Placed, to: Placed) -> Contact {
+        if self.connects(from, to) {
+            Contact::InRange
+        } else {
+            Contact::None
+        }
+    }
+}
+
+/// What one robot is to what another sends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contact {
+    /// In range: it is offered what goes to everybody.
+    InRange,
+    /// Out of range, and yet a frame may reach it now and then. What does is counted apart.
+    Beyond,
+    /// Out of earshot.
+    None,
 }
 
 impl Reach {

@@ -64,6 +64,12 @@ pub trait Places {
     /// Calls `visit` once for each robot within `range` metres of the place `centre` at `at`, the rim included, with where it is then.
     /// The order is the same in every run, and follows no rule that callers should rely on.
     fn for_each_within(&self, centre: Vec2, at: SimTime, range: f64, visit: &mut dyn FnMut(ActorId, Vec2));
+
+    /// While nobody moves, a number that is another after anybody has: as long as the answer is the same, everybody is where they were. A medium
+    /// may keep what follows from that.
+    fn standing(&self) -> Option<u32> {
+        None
+    }
 }
 
 /// Robots that stand still, in order of their numbers: to try a radio out without a run.

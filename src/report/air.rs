@@ -75,6 +75,11 @@ pub fn rows(summary: &Summary) -> Vec<Row> {
             format!("{share} of the frames that ask for an acknowledgement"),
         ));
     }
+    if radio.strayed.estimate.value > Some(0.0) {
+        let share = estimate(&radio.strayed.estimate, percent);
+        let words = format!("{share} of all messages received came from out of range: counted nowhere else");
+        rows.push(("beyond", words));
+    }
     if radio.power.estimate.value.is_some() {
         let power = estimate(&radio.power.estimate, signed);
         rows.push(("power", format!("{power} dBm, mean of the copies that were understood")));

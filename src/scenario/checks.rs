@@ -85,7 +85,7 @@ fn sections(scenario: &Scenario) -> Vec<Problem> {
     let sections: [(_, _, &[&str]); 7] = [
         ("arena", arena.problems(), &[]),
         ("motion", motion.problems(), &[]),
-        ("radio", radio.problems(swarm.robots), &[]),
+        ("radio", radio.problems(swarm.robots, scenario.control.drift()), &[]),
         ("swarm.deploy", deploy, &around),
         ("protocol", protocol, &["swarm.robots", "radio.range"]),
         ("detector", detector.problems(), &[]),
@@ -112,6 +112,12 @@ fn periods(scenario: &Scenario) -> Vec<Problem> {
         .into_iter()
         .filter_map(|(path, period)| too_short(path, period))
         .collect();
+    let drift = scenario.control.clock_drift.get();
+    if drift > limits::CLOCK_DRIFT {
+        let message = format!("clocks that are wrong by {drift} parts in a million are out of range");
+        let help = format!("expected at most {}: crystals are within 10 to 50", limits::CLOCK_DRIFT);
+        found.push(Problem::new("control.clock_drift", message, help));
+    }
     let time_limit = scenario.time_limit.get();
     if time_limit > limits::SECONDS {
         let message = format!("a time limit of {time_limit} s is out of range");

@@ -12,6 +12,8 @@ pub const SECONDS: f64 = 1e9;
 pub const METRES: f64 = 1e9;
 /// Shortest period of anything that repeats, seconds. Virtual time counts nanoseconds.
 pub const SHORTEST_PERIOD: f64 = 1e-6;
+/// By how many parts in a million clocks are wrong at most.
+pub const CLOCK_DRIFT: f64 = 1e5;
 /// Motion ticks, or control steps of a robot, in a trial.
 pub const STEPS: f64 = 1e8;
 /// Control steps of all robots in a trial.

@@ -1,26 +1,56 @@
 //! When robots wake: the control steps of all, and each robot's own timers and arrivals.
 
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, Clocks, SimTime, Span};
 use crate::protocol::{TimerId, Wake};
 
 /// The control steps of all robots. Each robot has a phase of its own and all have one period, so the order in which they
-/// take their steps never changes: a ring, sorted once, where a queue would sort anew at every step.
+/// take their steps hardly ever changes: a ring, sorted once, where a queue would sort anew at every step. Where clocks are not right, a robot moves past
+/// another now and then.
 #[derive(Debug)]
 pub struct ControlSteps {
     /// Each robot with its step of this round or, behind `next`, of the last one; in order of time, then of id.
     ring: Vec<(SimTime, ActorId)>,
     next: usize,
     period: Span,
+    clocks: Clocks,
+    /// When each robot takes its next step by its own clock; empty where clocks are right.
+    readings: Vec<SimTime>,
 }
 
 impl ControlSteps {
-    /// Control steps every `period`, that of robot i first at `first_steps[i]`, which is less than a period.
-    pub fn new(first_steps: &[SimTime], period: Span) -> Self {
+    /// Control steps every `period`, that of robot i first at `first_steps[i]`, which is less than a period: both by its clock.
+    pub fn new(first_steps: &[SimTime], period: Span, clocks: Clocks) -> Self {
         let robots = (0..).map(ActorId);
-        let mut ring: Vec<_> = first_steps.iter().copied().zip(robots).collect();
+        let first = |(reading, robot): (&SimTime, ActorId)| (clocks.when(robot, *reading), robot);
+        let mut ring: Vec<_> = first_steps.iter().zip(robots).map(first).collect();
         ring.sort_unstable();
-        debug_assert!(ring.last().is_none_or(|last| last.0 < SimTime::ZERO + period));
-        Self { ring, next: 0, period }
+        debug_assert!(first_steps.iter().all(|first| *first < SimTime::ZERO + period));
+        Self {
+            ring,
+            next: 0,
+            period,
+            readings: if clocks.are_right() {
+                Vec::new()
+            } else {
+                first_steps.to_vec()
+            },
+            clocks,
+        }
+    }
+
+    /// How many robots there are.
+    pub fn robots(&self) -> usize {
+        self.ring.len()
+    }
+
+    /// No robot takes two steps within this.
+    pub fn shortest_period(&self) -> Span {
+        let fastest = self.clocks.skews().iter().copied().fold(0.0, f64::max);
+        if fastest == 0.0 {
+            return self.period;
+        }
+        // Instants are whole nanoseconds, so that one step may be late and the next early by one.
+        Span::from_nanos((self.period.as_nanos() as f64 / (1.0 + fastest)) as u64).less(Span::from_nanos(2))
     }
 
     /// When the next control step is due; `NEVER` in an empty swarm.
@@ -37,8 +67,10 @@ impl ControlSteps {
     pub fn due_by(&self, end: SimTime) -> Vec<u64> {
         let period = self.period.as_nanos();
         let mut steps = vec![0; self.ring.len()];
-        for (next, robot) in &self.ring {
-            let first = next.as_nanos() % period;
+        for &(next, robot) in &self.ring {
+            let reading = self.readings.get(robot.index()).unwrap_or(&next);
+            let first = reading.as_nanos() % period;
+            let end = self.clocks.reading(robot, end);
             steps[robot.index()] = end.as_nanos().checked_sub(first).map_or(0, |since| since / period + 1);
         }
         steps
@@ -47,10 +79,30 @@ impl ControlSteps {
     /// Takes the next control step if it is due at `now`: the robot whose it is.
     pub fn take_due(&mut self, now: SimTime) -> Option<ActorId> {
         let step = self.ring.get_mut(self.next).filter(|step| step.0 <= now)?;
-        step.0 += self.period;
         let robot = step.1;
+        step.0 += self.period;
+        if !self.readings.is_empty() {
+            self.plan_by_clock(robot);
+        }
         self.next = (self.next + 1) % self.ring.len();
         Some(robot)
+    }
+
+    /// Plans the next step of the robot at `next`, which has just taken one, and moves it to its place among those that wait longest.
+    fn plan_by_clock(&mut self, robot: ActorId) {
+        let reading = &mut self.readings[robot.index()];
+        *reading += self.period;
+        self.ring[self.next].0 = self.clocks.when(robot, *reading);
+        let robots = self.ring.len();
+        let mut place = self.next;
+        for _ in 1..robots {
+            let before = (place + robots - 1) % robots;
+            if self.ring[before] <= self.ring[place] {
+                return;
+            }
+            self.ring.swap(before, place);
+            place = before;
+        }
     }
 }
 
@@ -199,7 +251,7 @@ mod tests {
         ) {
             const PERIOD: u64 = 20;
             let first_steps: Vec<_> = phases.iter().copied().map(at).collect();
-            let mut steps = ControlSteps::new(&first_steps, Span::from_nanos(PERIOD));
+            let mut steps = ControlSteps::new(&first_steps, Span::from_nanos(PERIOD), Clocks::right());
             let mut taken = Vec::new();
             for now in 0..rounds * PERIOD {
                 let mut coming: VecDeque<_> = (0..phases.len()).map(|n| steps.ahead(n)).collect();
@@ -219,6 +271,37 @@ mod tests {
                     .collect();
                 prop_assert_eq!(steps.due_by(at(end)), due);
             }
+            prop_assert_eq!(taken, expected);
+        }
+
+        /// Clocks that are wrong by up to a tenth, so that robots pass each other again and again.
+        #[test]
+        fn by_wrong_clocks_each_robot_keeps_a_period_of_its_own(
+            robots in prop::collection::vec((0_u64..20, -0.1..0.1), 1..12), rounds in 1_u64..40,
+        ) {
+            const PERIOD: u64 = 20;
+            let first_steps: Vec<_> = robots.iter().map(|robot| at(robot.0)).collect();
+            let clocks = Clocks::of(robots.iter().map(|robot| robot.1));
+            let mut steps = ControlSteps::new(&first_steps, Span::from_nanos(PERIOD), clocks.clone());
+            let (shortest, end) = (steps.shortest_period(), rounds * PERIOD);
+            let mut taken = Vec::new();
+            while steps.upcoming() <= at(end) {
+                let now = steps.upcoming();
+                let robot = steps.take_due(now).expect("it is due");
+                let before = taken.iter().rev().find(|step: &&(SimTime, ActorId)| step.1 == robot);
+                prop_assert!(before.is_none_or(|step| now.since(step.0) >= shortest));
+                taken.push((now, robot));
+            }
+            let mut expected: Vec<_> = (0..2 * rounds)
+                .flat_map(|round| (0..).map(ActorId).zip(&first_steps).map(move |(robot, first)| (robot, *first + Span::from_nanos(PERIOD) * round)))
+                .map(|(robot, reading)| (clocks.when(robot, reading), robot))
+                .filter(|step| step.0 <= at(end))
+                .collect();
+            expected.sort_unstable();
+            let had: Vec<u64> = (0..robots.len() as u32)
+                .map(|robot| taken.iter().filter(|step| step.1 == ActorId(robot)).count() as u64)
+                .collect();
+            prop_assert_eq!(steps.due_by(at(end)), had);
             prop_assert_eq!(taken, expected);
         }
     }

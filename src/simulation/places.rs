@@ -14,15 +14,25 @@ impl Places for World {
     fn for_each_within(&self, centre: Vec2, at: SimTime, range: f64, visit: &mut dyn FnMut(ActorId, Vec2)) {
         self.for_each_around(centre, at, range, visit);
     }
+
+    fn standing(&self) -> Option<u32> {
+        World::standing(self)
+    }
 }
 
-/// What a radio is told of a run of `robots` robots in `arena`.
-pub(super) fn site(streams: Streams, robots: usize, arena: &ArenaConfig, body_radius: f64) -> RadioSite {
+/// What a radio is told of a run of `robots` robots in `arena` whose clocks are fast by `skews`.
+pub(super) fn site(
+    streams: Streams,
+    robots: usize,
+    arena: &ArenaConfig,
+    body_radius: f64,
+    skews: Vec<f64>,
+) -> RadioSite {
     RadioSite {
         streams,
         robots,
         body_radius,
-        skews: Vec::new(),
+        skews,
         obstacles: arena.obstacles.iter().map(obstacle).collect(),
     }
 }

@@ -99,7 +99,7 @@ pub struct Run<P: Protocol, D: Driver<Robot<P>>, O: Observer> {
 }
 
 impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
-    /// A run in which robot i takes its first control step at `first_steps[i]`, less than a period from the start.
+    /// A run at its start.
     #[allow(clippy::too_many_arguments)] // The parts of a run, each once.
     pub fn new(
         rhythm: Rhythm,
@@ -109,9 +109,10 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
         faults: Faults,
         observer: O,
         streams: Streams,
-        first_steps: &[SimTime],
+        control_steps: ControlSteps,
     ) -> Self {
-        let mut queue = EventQueue::with_capacity(first_steps.len() + 4);
+        let robots = control_steps.robots();
+        let mut queue = EventQueue::with_capacity(robots + 4);
         queue.schedule(Event::MotionTick, SimTime::ZERO + world.tick());
         if rhythm.sample_interval > Span::ZERO {
             queue.schedule(Event::Sample, SimTime::ZERO);
@@ -132,16 +133,16 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
             changes: Vec::new(),
             radio_due: SimTime::NEVER,
             observer,
-            control_steps: ControlSteps::new(first_steps, rhythm.control_period),
-            alarms: first_steps.iter().map(|_| Alarms::default()).collect(),
-            wakes: vec![[0; 2]; first_steps.len()],
+            control_steps,
+            alarms: std::iter::repeat_with(Alarms::default).take(robots).collect(),
+            wakes: vec![[0; 2]; robots],
             randomness: streams.keyed(ROBOT),
             batch: Vec::new(),
             answers: VecDeque::new(),
             spare_jobs: Vec::new(),
             reached: Vec::new(),
             told: Vec::new(),
-            prefetches: outgrows_cache(first_steps.len()),
+            prefetches: outgrows_cache(robots),
             positions: Vec::new(),
             events: 0,
             steps: 0,
@@ -301,7 +302,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
             events: self.events,
             robot_steps: self.control_steps.due_by(end),
             poses,
-            robots: self.driver.finish().await.into_iter().map(|robot| robot.0).collect(),
+            robots: self.driver.finish().await.into_iter().map(Robot::into_inner).collect(),
             observer: self.observer,
         }
     }

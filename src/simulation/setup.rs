@@ -6,11 +6,12 @@ use std::sync::Arc;
 use tokio_util::sync::CancellationToken;
 
 use super::air::Air;
+use super::clock::ControlSteps;
 use super::digest::Digest;
 use super::error::RunError;
 use super::places::site;
 use super::run::{Ended, Rhythm, Run};
-use crate::engine::{ActorId, Actors, Driver, Inline, SimTime, Span, Streams, block_on};
+use crate::engine::{ActorId, Actors, Clocks, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
 use crate::geometry::Pose;
 use crate::happenings::Observer;
@@ -22,6 +23,9 @@ use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::{CompletionConfig, Protocol, Robot, Start};
 use crate::radio::{DiskConfig, Medium, RadioKind, Reach};
 use crate::spool::Scratch;
+
+/// By how much the clock of each robot is fast: one word a robot.
+const CLOCKS: Purpose = Purpose::new("control.clocks");
 
 /// How robots are run. Both give the same results, byte for byte.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -153,12 +157,13 @@ impl Setup {
     ) -> Result<Finished<P, O>, RunError> {
         assert_eq!(poses.len(), robots.len(), "every robot needs a pose");
         let swarm = robots.len();
+        let clocks = self.clocks(swarm);
         let started = |(mut robot, number): (P, u32)| {
             robot.start(Start {
                 me: ActorId(number),
                 robots: swarm,
             });
-            Robot(robot)
+            Robot::new(robot, &clocks)
         };
         let robots = robots.into_iter().zip(0..).map(started).collect();
         let medium = self.medium(swarm);
@@ -209,7 +214,7 @@ impl Setup {
     ) -> Result<Ended<P, O>, RunError> {
         let streams = self.streams();
         let robots = poses.len();
-        let first_steps = self.first_steps(robots, streams);
+        let control_steps = ControlSteps::new(&self.first_steps(robots, streams), self.control.period(), self.clocks(robots));
         let world = World::new(&self.motion, &self.arena, poses, medium.reach().farthest());
         let rhythm = self.rhythm();
         let air = Air::<P>::new(
@@ -220,7 +225,7 @@ impl Setup {
             rhythm.wake_on_reception,
         );
         let faults = Faults::new(&self.faults, P::ROLES, robots, rhythm.control_period, streams);
-        let run = Run::new(rhythm, driver, world, air, faults, observer, streams, &first_steps);
+        let run = Run::new(rhythm, driver, world, air, faults, observer, streams, control_steps);
         run.until_end(stop).await
     }
 
@@ -257,7 +262,8 @@ impl Setup {
     fn medium(&self, robots: usize) -> Box<dyn Medium> {
         let radio = self.own_radio.as_deref().unwrap_or(&self.radio);
         let body_radius = self.motion.body_radius.get();
-        radio.medium(&site(self.streams(), robots, &self.arena, body_radius))
+        let skews = self.clocks(robots).skews().to_vec();
+        radio.medium(&site(self.streams(), robots, &self.arena, body_radius, skews))
     }
 
     fn headers<P: Protocol>(&self) -> HeaderBytes {
@@ -292,7 +298,12 @@ impl Setup {
         }
     }
 
-    /// When each robot takes its first control step.
+    /// The clocks of so many robots.
+    fn clocks(&self, robots: usize) -> Clocks {
+        Clocks::drawn(self.control.drift(), robots, self.streams().keyed(CLOCKS))
+    }
+
+    /// When each robot takes its first control step, by its own clock.
     fn first_steps(&self, robots: usize, streams: Streams) -> Vec<SimTime> {
         let phases = Phases::new(self.control.phase, streams);
         let first = |robot| SimTime::ZERO + phases.span(ActorId(robot), Repeated::ControlStep, self.control.period());

@@ -99,7 +99,7 @@ impl<P: Protocol, D: Driver<Robot<P>>, O: Observer> Run<P, D, O> {
         }
         let next_event = self.queue.peek().map_or(SimTime::NEVER, |(_, at)| at);
         let end = self.rhythm.time_limit + INSTANT;
-        let heard = now + self.air.lookahead().min(self.rhythm.control_period);
+        let heard = now + self.air.lookahead().min(self.control_steps.shortest_period());
         next_event.min(end).min(heard)
     }
 

@@ -4,6 +4,7 @@
 mod shipped;
 
 mod airtime;
+mod clocks;
 mod codecs;
 mod drivers;
 mod exchangeable;

@@ -16,6 +16,7 @@ pub fn robots(records: &mut Records, table: &Table) -> Result<(), Wrong> {
     let dropped = by_cause(|cause| table.counts(&format!("dropped_{cause}")))?;
     let (queue_wait, access_delay) = (waits_of(table, "queue_wait")?, waits_of(table, "access_delay")?);
     let heard = copies(table)?;
+    let strayed = table.counts("strayed")?;
     let energy = ENERGY_STATES
         .iter()
         .map(|state| table.numbers(&format!("energy_{state}_J")));
@@ -49,6 +50,7 @@ pub fn robots(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             queue_wait: queue_wait[row],
             access_delay: access_delay[row],
             heard: heard[row],
+            strayed: strayed[row],
         });
     }
     Ok(())

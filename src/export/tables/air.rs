@@ -61,6 +61,7 @@ pub fn robot_columns() -> Vec<Column<Robot>> {
         }));
     }
     columns.extend(of_copies(|row: &Robot| row.air.heard));
+    columns.push(Col::count("strayed", |row| row.air.strayed));
     let states = ENERGY_STATES.iter().enumerate();
     columns
         .extend(states.map(|(place, state)| Col::f64(format!("energy_{state}_J"), move |row| row.air.energy[place])));

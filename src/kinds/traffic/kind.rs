@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Source, To};
 use crate::engine::ActorId;
-use crate::kind::{Kind, Sections, Shared, Swarm};
+use crate::kind::{Broadcasts, Kind, Sections, Shared, Swarm};
 use crate::quantity::Positive;
 
 /// Robots that send messages of one size, so often and to these; nothing else. They stand where they are.
@@ -150,6 +150,21 @@ impl Kind for TrafficConfig {
             found.push(("when".to_owned(), message.to_owned()));
         }
         found
+    }
+
+    fn broadcasts(&self, sections: &Sections<'_>) -> Option<Broadcasts> {
+        let per_second = match self.when {
+            Timing::Periodic(interval) => 1.0 / interval.get(),
+            Timing::Poisson(rate) => rate.get(),
+            Timing::Saturated => return None,
+        };
+        let broadcasts = Broadcasts {
+            sending: self.sending(sections.robots) / f64::from(sections.robots.max(1)),
+            per_second,
+            payload: self.payload.into(),
+            scattered: true,
+        };
+        (self.to == Recipients::Everyone).then_some(broadcasts)
     }
 
     fn frames_a_second(&self, sections: &Sections<'_>) -> f64 {

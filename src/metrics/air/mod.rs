@@ -135,6 +135,11 @@ impl Air {
         }
     }
 
+    /// A robot got a message though it counted as out of range.
+    pub fn strayed(&mut self, receiver: ActorId) {
+        self.robots[receiver.index()].air.strayed += 1;
+    }
+
     /// What a robot's radio did in all of the run.
     pub fn accounted(&mut self, robot: ActorId, account: &Account) {
         let robot = &mut self.robots[robot.index()].air;

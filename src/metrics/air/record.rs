@@ -54,6 +54,8 @@ pub struct RobotAir {
     pub access_delay: Option<Waits>,
     /// Copies that it was offered.
     pub heard: Copies,
+    /// Messages that it got though it counted as out of range of their senders: they are in no other count.
+    pub strayed: u64,
 }
 
 impl RobotAir {

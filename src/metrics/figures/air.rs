@@ -24,6 +24,7 @@ impl Registry {
     /// | `radio.attempts` | how often a frame that went on air was there |
     /// | `radio.unacknowledged` | share of the frames that are acknowledged or sent again that never were acknowledged |
     /// | `radio.dropped` | share of the frames handed over that never went on air |
+    /// | `radio.strayed` | of all messages received, those whose receiver counted as out of range: offered to nobody, they are in no other figure |
     /// | `radio.energy_J` | what a robot's radio drew from its battery, J |
     /// | `radio.power_dBm` | power of copies that were understood, dBm |
     #[must_use]
@@ -74,6 +75,12 @@ fn declare(registry: &mut Registry) {
     );
     registry.add_ratio("radio.dropped", "frames that never went on air", lost, |record| {
         [sum(record, RobotAir::never_sent), sum(record, |robot| robot.frames)]
+    });
+    let apart = (DIMENSIONLESS, Better::Lower, Estimator::ShareOf);
+    registry.add_ratio("radio.strayed", "messages received from out of range", apart, |record| {
+        let strayed = sum(record, |robot| robot.strayed);
+        let delivered: u64 = record.ledger.iter().map(|fates| fates.delivered).sum();
+        [strayed, strayed + delivered as f64]
     });
     let energy = ("J", Better::Lower, Estimator::Mean);
     registry.add_plain("radio.energy_J", "energy of a robot's radio", energy, energy_j);

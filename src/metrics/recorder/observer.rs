@@ -59,6 +59,10 @@ impl Observer for Recorder {
         }
     }
 
+    fn strayed(&mut self, copy: &Copy, _: SimTime, _: Option<SimTime>) {
+        self.air().strayed(copy.receiver);
+    }
+
     fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
         self.in_flight(copy.topic, at.map(|at| copy.latency(at)));
         if let Some(pairs) = &mut self.pairs {

@@ -27,6 +27,8 @@ pub struct RadioSummary {
     pub unacknowledged: Measured,
     /// Share of the frames handed over that never went on air.
     pub dropped: Measured,
+    /// Share of all messages received whose receiver counted as out of range.
+    pub strayed: Measured,
     /// What a robot's radio drew from its battery; no value where the radio does not account for it.
     #[serde(rename = "energy_J")]
     pub energy: Measured,
@@ -133,6 +135,7 @@ impl RadioSummary {
             attempts: figures.measured("radio.attempts", DIMENSIONLESS),
             unacknowledged: figures.measured("radio.unacknowledged", DIMENSIONLESS),
             dropped: figures.measured("radio.dropped", DIMENSIONLESS),
+            strayed: figures.measured("radio.strayed", DIMENSIONLESS),
             energy_by_state: match energy.estimate.value {
                 Some(_) => Named::of(ENERGY_STATES, |state| all.energy[state] / *robots as f64),
                 None => Named::default(),

@@ -6,6 +6,7 @@ use rand_distr::{Distribution, Normal};
 
 use super::access::Draws;
 use super::agenda::{Agenda, Task};
+use super::audience::Audiences;
 use super::burst::Bursts;
 use super::config::SharedConfig;
 use super::ear::Ear;
@@ -25,6 +26,10 @@ use crate::radio::{Links, Obstacle, RadioSite};
 /// Where in its round of channels each receiver begins.
 const SCANS: Purpose = Purpose::new("radio.scans");
 
+/// The share of lone frames that come through between robots that count as in range, and the least that is worth a thought.
+const IN_RANGE: f64 = 0.5;
+const FAINTEST: f64 = 0.01;
+
 const POWERS: Purpose = Purpose::new("radio.powers");
 
 /// Where there is no noise, what is left out is what is so many dB below the sensitivity, whatever `negligible` says more.
@@ -36,7 +41,10 @@ impl SharedConfig {
         let spread = self.spread(site.streams, site.robots, phy.transmit_power);
         let sigma = self.shadowing.as_ref().map_or(0.0, |shadowing| shadowing.sigma.get());
         let fading = Fading::new(&self.fading, &site.streams, phy.frequency);
-        let threshold = range::threshold_dbm(phy, &self.fading, self.range_payload.into());
+        let level = |probability| match phy.infrared {
+            Some(_) => link::UNSEEN_DBM,
+            None => range::threshold_dbm(phy, &self.fading, self.range_payload.into(), probability),
+        };
         let noise = phy.noise.max(phy.sensitivity - QUIET_DB);
         let strongest = |levels: &[f64]| levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         LinkBudget {
@@ -52,11 +60,8 @@ impl SharedConfig {
             sends: spread.0,
             gains: spread.1,
             infrared: phy.infrared.map(|infrared| infrared.range_m),
-            threshold: if phy.infrared.is_some() {
-                link::UNSEEN_DBM
-            } else {
-                threshold
-            },
+            threshold: level(IN_RANGE),
+            faintest: level(FAINTEST),
             floor: if phy.infrared.is_some() {
                 link::UNSEEN_DBM
             } else {
@@ -145,7 +150,12 @@ impl Shared {
     /// If `config` has problems: a scenario is checked before it is run.
     #[must_use]
     pub fn new(config: &SharedConfig, site: &RadioSite) -> Self {
-        let problems = config.problems(site.robots as u32);
+        let drift = site
+            .skews
+            .iter()
+            .copied()
+            .fold(0.0, |most: f64, skew| most.max(skew.abs()));
+        let problems = config.problems(site.robots as u32, drift);
         assert!(
             problems.is_empty(),
             "the radio's configuration is unusable: {problems:?}"
@@ -158,11 +168,6 @@ impl Shared {
         for (place, at) in jammers.begin() {
             agenda.add(at, Task::Jam(place));
         }
-        let drift = site
-            .skews
-            .iter()
-            .copied()
-            .fold(0.0, |most: f64, skew| most.max(skew.abs()));
         let mut shared = Self {
             battery: config.battery.map(Positive::get),
             budget: Arc::new(config.budget(&phy, site)),
@@ -185,8 +190,7 @@ impl Shared {
             scans: site.streams.keyed(SCANS),
             room: config.queue as usize,
             longest: Span::ZERO,
-            body_radius: site.body_radius,
-            reached: Vec::new(),
+            audiences: Audiences::new(robots, config.noise.len(), site.body_radius),
             spare: Vec::new(),
             shortest: phy.airtime(0),
             phy,

@@ -198,10 +198,10 @@ impl SharedConfig {
         phy
     }
 
-    /// What is wrong between fields that are each in range: the path of the field at fault, from this section on, and what is wrong with it and would
+    /// What is wrong between fields that are each in range, for so many robots whose clocks are fast or slow by up to a share of `drift`: the path of the field at fault, from this section on, and what is wrong with it and would
     /// be right.
     #[must_use]
-    pub fn problems(&self, robots: u32) -> Vec<(String, String)> {
+    pub fn problems(&self, robots: u32, drift: f64) -> Vec<(String, String)> {
         let within = |section: &str, problems: Vec<(String, String)>| {
             let path = |(field, message): (String, String)| (format!("{section}.{field}"), message);
             problems.into_iter().map(path).collect::<Vec<_>>()
@@ -217,18 +217,20 @@ impl SharedConfig {
             found.push(("queue".to_owned(), message.to_owned()));
         }
         if found.is_empty() {
-            found.extend(self.misfits());
+            found.extend(self.misfits(drift));
         }
         found
     }
 
     /// What of it does not fit together: frames that never fit a slot.
-    fn misfits(&self) -> Vec<(String, String)> {
+    fn misfits(&self, drift: f64) -> Vec<(String, String)> {
         let phy = self.phy();
         let shortest = phy.airtime(0).as_secs();
         let (slot, guard) = match self.access() {
             AccessConfig::SlottedAloha { slot, .. } => (slot.get(), 0.0),
-            AccessConfig::Tdma { slot, guard, .. } => (slot.get(), guard.map_or(0.0, NonNegative::get)),
+            AccessConfig::Tdma {
+                slot, guard, resync, ..
+            } => (slot.get(), guard.map_or(2.0 * drift * resync.get(), NonNegative::get)),
             _ => return Vec::new(),
         };
         if slot - guard >= shortest {

@@ -37,6 +37,8 @@ impl Heard {
 pub(super) struct Ear {
     /// In the order in which they began.
     heard: VecDeque<Heard>,
+    /// The longest of them so far.
+    longest: Span,
     /// When it sent or turned round, and so heard nothing, in order of time.
     deaf: VecDeque<(SimTime, SimTime)>,
     /// How long it has found the channel busy, and how long it has heard frames of others.
@@ -73,6 +75,7 @@ impl Ear {
         while self.heard.front().is_some_and(|oldest| oldest.ends < since) {
             self.heard.pop_front();
         }
+        self.longest = self.longest.max(heard.ends.since(heard.begins));
         self.heard.push_back(heard);
     }
 
@@ -105,14 +108,17 @@ impl Ear {
             .find(|heard| heard.burst == burst)
     }
 
-    /// All that is on air on `channel` at any time from `from` to before `until`, as it began.
+    /// All that is on air on `channel` at any time from `from` to before `until`, as it began. What began more than the longest burst
+    /// before is over, so that it does not matter how much is remembered.
     pub fn during(
         &self,
         channel: u8,
         from: SimTime,
         until: SimTime,
-    ) -> impl DoubleEndedIterator<Item = &Heard> + Clone {
-        let heard = self.heard.iter();
+    ) -> impl Iterator<Item = &Heard> + Clone {
+        let (first, last) = (from - self.longest, until);
+        let first = self.heard.partition_point(|heard| heard.begins < first);
+        let heard = self.heard.range(first..).take_while(move |heard| heard.begins < last);
         heard.filter(move |heard| (heard.channel == channel || heard.is_noise) && heard.overlaps(from, until))
     }
 

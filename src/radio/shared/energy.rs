@@ -67,7 +67,7 @@ impl Shared {
 }
 
 /// What a radio draws while it sends, receives, listens and turns around, watts.
-fn watts(supply: &Supply) -> [f64; 4] {
+pub(super) fn watts(supply: &Supply) -> [f64; 4] {
     let amperes = [supply.send, supply.receive, supply.listen, supply.turnaround];
     amperes.map(|amperes| supply.volts.get() * amperes.get())
 }

@@ -4,9 +4,10 @@ use super::access::{self, Next};
 use super::agenda::Task;
 use super::burst::{Burst, BurstId, Content};
 use super::ear::Heard;
+use super::link::{NOBODY, Source};
 use super::receiver::dbm;
 use super::station::Doing;
-use super::{Shared, link};
+use super::Shared;
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Vec2;
 use crate::radio::draw::FrameCopy;
@@ -56,7 +57,7 @@ impl Shared {
             cut: false,
         });
         self.agenda.add(ends, Task::End(burst));
-        let mut heard = Heard {
+        let heard = Heard {
             burst,
             begins: now,
             ends,
@@ -69,28 +70,7 @@ impl Shared {
         let radio = &mut self.radios[robot.index()];
         radio.sent = radio.sent + airtime;
 
-        let mut reached = std::mem::take(&mut self.reached);
-        reached.clear();
-        places.for_each_within(position, now, self.budget.audible(), &mut |other, place| {
-            reached.push((other, place));
-        });
-        for &(other, place) in &reached {
-            if other == robot || self.is_hidden(robot, position, other, place, &reached) {
-                continue;
-            }
-            heard.power = self.budget.milliwatts((robot, position), (other, place), now);
-            if heard.power > 0.0 {
-                let ear = &mut self.ears[other.index()];
-                ear.hear(heard, since);
-                if self.receiver.is_busy(&heard) {
-                    ear.busy.add(now, ends);
-                }
-                if self.receiver.is_strong(&heard) {
-                    ear.frames.add(now, ends);
-                }
-            }
-        }
-        self.reached = reached;
+        self.reach(Source::Robot(robot), position, heard, places);
         burst
     }
 
@@ -101,10 +81,9 @@ impl Shared {
         if let Some(next) = next {
             self.agenda.add(next, Task::Jam(place));
         }
-        let since = self.since(now);
-        self.bursts.forget(since);
+        self.bursts.forget(self.since(now));
         let burst = self.bursts.add(Burst {
-            sender: link::NOBODY,
+            sender: NOBODY,
             content: Content::Noise,
             begins: now,
             ends,
@@ -112,41 +91,38 @@ impl Shared {
             channel: 0,
             cut: false,
         });
-        let mut reached = std::mem::take(&mut self.reached);
-        reached.clear();
-        let range = self.budget.audible_from(jammer.power);
-        places.for_each_within(jammer.position, now, range, &mut |robot, place| {
-            reached.push((robot, place));
-        });
-        for &(robot, place) in &reached {
-            let power = self
-                .budget
-                .noise_milliwatts(jammer.power, jammer.position, (robot, place), now);
-            if power > 0.0 {
-                let heard = Heard {
-                    burst,
-                    begins: now,
-                    ends,
-                    power,
-                    channel: 0,
-                    is_noise: true,
-                };
-                let ear = &mut self.ears[robot.index()];
-                ear.hear(heard, since);
-                if self.receiver.is_busy(&heard) {
-                    ear.busy.add(now, ends);
-                }
-            }
-        }
-        self.reached = reached;
+        let heard = Heard {
+            burst,
+            begins: now,
+            ends,
+            power: f64::INFINITY,
+            channel: 0,
+            is_noise: true,
+        };
+        let source = Source::Jammer {
+            place,
+            power: jammer.power,
+        };
+        self.reach(source, jammer.position, heard, places);
     }
 
-    /// Whether a third body among `near` is in the way of light.
-    fn is_hidden(&self, from: ActorId, here: Vec2, to: ActorId, there: Vec2, near: &[(ActorId, Vec2)]) -> bool {
-        self.budget.infrared.is_some()
-            && near
-                .iter()
-                .any(|&(third, body)| third != from && third != to && link::hides(body, self.body_radius, here, there))
+    /// Whoever a burst from `here` reaches takes it up.
+    fn reach(&mut self, source: Source, here: Vec2, mut heard: Heard, places: &dyn Places) {
+        let since = self.since(heard.begins);
+        let audience = self
+            .audiences
+            .look_up(heard.begins, source, here, &self.budget, places);
+        for link in audience.iter().filter(|link| link.power > 0.0) {
+            heard.power = link.power;
+            let ear = &mut self.ears[link.robot.index()];
+            ear.hear(heard, since);
+            if self.receiver.is_busy(&heard) {
+                ear.busy.add(heard.begins, heard.ends);
+            }
+            if !heard.is_noise && self.receiver.is_strong(&heard) {
+                ear.frames.add(heard.begins, heard.ends);
+            }
+        }
     }
 
     /// A burst is over: who has it and who has not is decided, as far as it can be.

@@ -3,7 +3,7 @@
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::{Vec2, at_most};
 use crate::radio::propagation::{Fading, PathLoss, Shadowing, Walls};
-use crate::radio::reach::{Links, Placed};
+use crate::radio::reach::{Contact, Links, Placed};
 
 /// How many standard deviations of shadowing are looked beyond the mean for robots that it brings near: one link in 700 is stronger.
 const DEVIATIONS: f64 = 3.0;
@@ -23,6 +23,8 @@ pub(super) struct LinkBudget {
     pub infrared: Option<f64>,
     /// The mean power at which a lone frame comes through half of the time, dBm.
     pub threshold: f64,
+    /// The mean power at which one in a hundred does, dBm: below it nobody out of range is thought of.
+    pub faintest: f64,
     /// The power below which a burst is not even noise, dBm.
     pub floor: f64,
     /// The greatest of `sends`, and of `gains`.
@@ -32,6 +34,30 @@ pub(super) struct LinkBudget {
     pub sigma: f64,
 }
 
+/// Who sends.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Source {
+    /// A robot.
+    Robot(ActorId),
+    /// A sender of noise, by its place among these, and how strong it is with its antenna's gain, dBm.
+    Jammer { place: u32, power: f64 },
+}
+
+impl Source {
+    /// Whether it is this robot.
+    pub fn is(self, robot: ActorId) -> bool {
+        matches!(self, Self::Robot(sender) if sender == robot)
+    }
+
+    /// The ends of a link from `here` to `to`. It is the same both ways: it is always seen from the lower number, and from robots before jammers.
+    fn ends(self, here: Vec2, to: Placed) -> [Vec2; 2] {
+        match self {
+            Self::Robot(from) if from <= to.0 => [here, to.1],
+            Self::Robot(_) | Self::Jammer { .. } => [to.1, here],
+        }
+    }
+}
+
 /// A strength that everything at all hears: infrared has no other.
 const PRESENT_DBM: f64 = 0.0;
 
@@ -39,10 +65,16 @@ const PRESENT_DBM: f64 = 0.0;
 pub(super) const UNSEEN_DBM: f64 = -1.0;
 
 impl LinkBudget {
-    /// How far a burst is looked for, metres.
-    pub fn audible(&self) -> f64 {
-        self.infrared
-            .unwrap_or_else(|| self.distance_at(self.floor.min(self.threshold)))
+    /// How far what a source sends is looked for, metres.
+    pub fn audible(&self, source: Source) -> f64 {
+        match source {
+            Source::Robot(_) => self
+                .infrared
+                .unwrap_or_else(|| self.distance_at(self.floor.min(self.faintest))),
+            Source::Jammer { power, .. } => self
+                .path
+                .distance_at(power + self.best_gain - self.floor + DEVIATIONS * self.sigma),
+        }
     }
 
     /// How far the strongest robot reaches with so much power, shadowing at its best, metres.
@@ -51,15 +83,20 @@ impl LinkBudget {
             .distance_at(self.strongest + self.best_gain - power_dbm + DEVIATIONS * self.sigma)
     }
 
-    /// The mean power of `from` at `to` over fading, dBm; −∞ where nothing arrives.
-    pub fn mean_dbm(&self, from: Placed, to: Placed) -> f64 {
-        // A link is the same both ways: it is always seen from the lower number.
-        let [low, high] = if from.0 <= to.0 { [from.1, to.1] } else { [to.1, from.1] };
-        if let Some(range) = self.infrared {
-            let sees = (low - high).norm() <= at_most(range) && !self.is_blocked(low, high);
-            return if sees { PRESENT_DBM } else { f64::NEG_INFINITY };
-        }
-        let mut power = self.sends[from.0.index()] + self.gains[to.0.index()] - self.path.loss_db((low - high).norm());
+    /// The mean power of a source that is at `here` at a robot over fading, dBm; −∞ where nothing arrives.
+    pub fn mean_dbm(&self, source: Source, here: Vec2, (robot, there): Placed) -> f64 {
+        let ends @ [low, high] = source.ends(here, (robot, there));
+        let sends = match source {
+            Source::Robot(from) => {
+                if let Some(range) = self.infrared {
+                    let sees = (low - high).norm() <= at_most(range) && !self.is_blocked(ends);
+                    return if sees { PRESENT_DBM } else { f64::NEG_INFINITY };
+                }
+                self.sends[from.index()]
+            }
+            Source::Jammer { power, .. } => power,
+        };
+        let mut power = sends + self.gains[robot.index()] - self.path.loss_db((low - high).norm());
         if let Some(shadowing) = &self.shadowing {
             power += shadowing.db(low, high);
         }
@@ -69,40 +106,14 @@ impl LinkBudget {
         power
     }
 
-    /// The power of `from` at `to` at an instant, milliwatts.
-    pub fn milliwatts(&self, from: Placed, to: Placed, at: SimTime) -> f64 {
-        let mean = self.mean_dbm(from, to);
-        if mean < self.floor {
-            return 0.0;
-        }
-        let [low, high] = if from.0 <= to.0 { [from.1, to.1] } else { [to.1, from.1] };
-        super::receiver::milliwatts(mean) * self.fading.gain(low, high, at.as_secs())
-    }
-
-    /// How far noise of so much power is looked for, metres.
-    pub fn audible_from(&self, power: f64) -> f64 {
-        self.path
-            .distance_at(power + self.best_gain - self.floor + DEVIATIONS * self.sigma)
-    }
-
-    /// The power of a sender of noise at a robot, milliwatts.
-    pub fn noise_milliwatts(&self, power: f64, from: Vec2, (robot, to): Placed, at: SimTime) -> f64 {
-        let mut mean = power + self.gains[robot.index()] - self.path.loss_db((to - from).norm());
-        // Nobody has the highest number: a link is always seen from the robot.
-        if let Some(shadowing) = &self.shadowing {
-            mean += shadowing.db(to, from);
-        }
-        if let Some(walls) = &self.walls {
-            mean -= walls.loss_db(to, from);
-        }
-        if mean < self.floor {
-            return 0.0;
-        }
-        super::receiver::milliwatts(mean) * self.fading.gain(to, from, at.as_secs())
+    /// By how much fading makes it stronger at an instant, a plain ratio.
+    pub fn gain(&self, source: Source, here: Vec2, to: Placed, at: SimTime) -> f64 {
+        let [low, high] = source.ends(here, to);
+        self.fading.gain(low, high, at.as_secs())
     }
 
     /// Whether a wall stands between two places.
-    fn is_blocked(&self, here: Vec2, there: Vec2) -> bool {
+    fn is_blocked(&self, [here, there]: [Vec2; 2]) -> bool {
         self.walls.as_ref().is_some_and(|walls| walls.blocked(here, there))
     }
 }
@@ -112,8 +123,20 @@ impl Links for LinkBudget {
         self.infrared.unwrap_or_else(|| self.distance_at(self.threshold))
     }
 
+    fn earshot(&self) -> f64 {
+        self.infrared.unwrap_or_else(|| self.distance_at(self.faintest))
+    }
+
     fn connects(&self, from: Placed, to: Placed) -> bool {
-        self.mean_dbm(from, to) >= self.threshold
+        self.contact(from, to) == Contact::InRange
+    }
+
+    fn contact(&self, from: Placed, to: Placed) -> Contact {
+        match self.mean_dbm(Source::Robot(from.0), from.1, to) {
+            mean if mean >= self.threshold => Contact::InRange,
+            mean if mean >= self.faintest => Contact::Beyond,
+            _ => Contact::None,
+        }
     }
 }
 

@@ -5,8 +5,8 @@
 //! which it reaches, whomever it is for. When it ends, each of its receivers judges it by what else it took up meanwhile.
 //!
 //! # Cost
-//! Events are a few a frame and none a receiver: medium access, beginning, end, acknowledgement. A burst looks once at each robot that it reaches,
-//! and all questions are answered by what one robot's antenna takes up.
+//! Events are a few a frame and none a receiver: medium access, beginning, end, acknowledgement. A burst looks once at each robot that it reaches, whose
+//! strength is kept while both stand, and all questions are answered by what one robot's antenna takes up.
 //!
 //! # Randomness
 //! Keyed throughout: bit errors by sender, receiver, frame and attempt; medium access by robot and draw; fields by their place. So what survives at
@@ -14,12 +14,14 @@
 
 mod access;
 mod agenda;
+mod audience;
 mod build;
 mod burst;
 mod config;
 mod ear;
 mod energy;
 mod exchange;
+mod forecast;
 mod jammer;
 mod link;
 mod range;
@@ -28,12 +30,14 @@ mod station;
 
 pub use access::{AccessConfig, CsmaCaConfig, DcfConfig, PacedConfig};
 pub use config::{CaptureConfig, SharedConfig};
+pub use forecast::{Form, Stream};
 pub use jammer::NoiseConfig;
 
 use std::sync::Arc;
 
 use access::{Draws, Head, Scheme, Station, Step};
 use agenda::{Agenda, Task};
+use audience::Audiences;
 use burst::Bursts;
 use ear::Ear;
 use jammer::Jammers;
@@ -48,7 +52,6 @@ use super::{
     Transmission,
 };
 use crate::engine::{ActorId, KeyedStreams, SimTime, Span};
-use crate::geometry::Vec2;
 
 /// The shared radio of one run.
 pub struct Shared {
@@ -73,10 +76,9 @@ pub struct Shared {
     longest: Span,
     /// What each robot's battery holds at first, joules, if that is limited.
     battery: Option<f64>,
-    /// Bodies are in the way of light.
-    body_radius: f64,
+    /// Who takes up what robots and jammers send.
+    audiences: Audiences,
     /// Buffers.
-    reached: Vec<(ActorId, Vec2)>,
     spare: Vec<Vec<Open>>,
     shortest: Span,
 }

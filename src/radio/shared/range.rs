@@ -1,4 +1,4 @@
-//! From which mean power on two robots count as in range.
+//! From which mean power on two robots count as in range, and from which on one may hear the other at all.
 
 use super::receiver::{Tables, ratio};
 use crate::radio::propagation::FadingConfig;
@@ -8,9 +8,9 @@ use crate::radio::technology::Phy;
 const SEARCHED_DB: [f64; 2] = [-60.0, 120.0];
 const FINE_DB: f64 = 1e-6;
 
-/// The mean power at which a lone frame with so much payload comes through with a probability of one half over fading, dBm. Where there is no noise a
+/// The mean power at which a lone frame with so much payload comes through with a `probability` over fading, dBm. Where there is no noise a
 /// frame comes through at the sensitivity or above.
-pub(super) fn threshold_dbm(phy: &Phy, fading: &FadingConfig, payload: u32) -> f64 {
+pub(super) fn threshold_dbm(phy: &Phy, fading: &FadingConfig, payload: u32, probability: f64) -> f64 {
     let quiet = phy.noise == f64::NEG_INFINITY;
     // A level over the noise, or over the sensitivity where there is none.
     let over = if quiet { phy.sensitivity } else { phy.noise };
@@ -31,7 +31,7 @@ pub(super) fn threshold_dbm(phy: &Phy, fading: &FadingConfig, payload: u32) -> f
     };
     let suffices = |db: f64| {
         let mean = ratio(db);
-        fading.mean_of(|gain| success(mean * gain)) >= 0.5
+        fading.mean_of(|gain| success(mean * gain)) >= probability
     };
     let [mut low, mut high] = SEARCHED_DB;
     while high - low > FINE_DB {

@@ -58,6 +58,7 @@ impl<P: Protocol> Air<P> {
             payload_bytes: size.payload_bytes,
             rides: size.rides,
             address: Address::Everyone,
+            beyond: false,
             message: message.into(),
         };
         Ok(Spoken { frame, to })

@@ -81,7 +81,9 @@ impl<P: Protocol> Air<P> {
             self.powers.resize_with(self.inboxes.len(), Vec::new);
         }
         for reading in self.fates.readings.drain(..) {
-            observer.measured(now, frame, &reading);
+            if !self.is_beyond[reading.receiver.index()] {
+                observer.measured(now, frame, &reading);
+            }
             if reading.received {
                 self.powers[reading.receiver.index()].push((frame, reading.power));
             }
@@ -90,17 +92,22 @@ impl<P: Protocol> Air<P> {
 
     /// Lets the fates of open copies of `frame` take effect, which the radio has decided at `now`.
     fn decide(&mut self, now: SimTime, frame: FrameId, observer: &mut impl Observer) {
-        if !self.fates.readings.is_empty() {
-            self.tell_readings(now, frame, observer);
-        }
         for (receiver, cause) in self.fates.losses.drain(..) {
+            let mut is_beyond = false;
             let lost = self.inboxes[receiver.index()].lose(frame, |reception| {
-                observer.lost(&copy_of::<P>(&reception.frame, receiver), cause, now);
+                is_beyond |= reception.frame.beyond;
+                if !is_beyond {
+                    observer.lost(&copy_of::<P>(&reception.frame, receiver), cause, now);
+                }
             });
             assert!(
                 lost,
                 "the radio loses a copy of {frame:?} at robot {receiver}, where none is open"
             );
+            if is_beyond {
+                self.is_beyond[receiver.index()] = true;
+                self.strays.push(receiver);
+            }
         }
         for arrival in self.fates.arrivals.drain(..) {
             let Arrival {
@@ -109,18 +116,32 @@ impl<P: Protocol> Air<P> {
                 displacement,
             } = arrival;
             assert!(at >= now, "the radio decides at {now} what has arrived at {at}");
+            let mut is_beyond = false;
             let arrives = self.inboxes[receiver.index()].arrive(frame, at, displacement, |frame| {
-                observer.arrives(&copy_of::<P>(frame, receiver), at);
+                is_beyond |= frame.beyond;
+                if !is_beyond {
+                    observer.arrives(&copy_of::<P>(frame, receiver), at);
+                }
             });
             assert!(
                 arrives,
                 "the radio delivers a copy of {frame:?} to robot {receiver}, for whom none is open"
             );
+            if is_beyond {
+                self.is_beyond[receiver.index()] = true;
+                self.strays.push(receiver);
+            }
             if self.tell_reached {
                 self.reached.push(receiver);
             }
         }
         self.fates.open.clear();
+        if !self.fates.readings.is_empty() {
+            self.tell_readings(now, frame, observer);
+        }
+        for robot in self.strays.drain(..) {
+            self.is_beyond[robot.index()] = false;
+        }
     }
 
     /// From `now` on the radio of `robot` does what its `health` allows. A copy is lost if its receiver cannot hear at the instant of its arrival;
@@ -163,8 +184,10 @@ impl<P: Protocol> Air<P> {
         let since = self.deaf_since[receiver.index()];
         if since < until {
             self.inboxes[receiver.index()].drop_arrivals(since, until, |reception| {
-                let copy = copy_of::<P>(&reception.frame, receiver);
-                observer.lost(&copy, LossCause::ReceiverDown, reception.at);
+                if !reception.frame.beyond {
+                    let copy = copy_of::<P>(&reception.frame, receiver);
+                    observer.lost(&copy, LossCause::ReceiverDown, reception.at);
+                }
             });
         }
     }
@@ -181,13 +204,24 @@ impl<P: Protocol> Air<P> {
         self.lose_unheard(now + INSTANT, receiver, observer);
         self.inboxes[receiver.index()].take_arrived(now, arrived);
         for reception in arrived.iter() {
-            observer.delivered(&copy_of::<P>(&reception.frame, receiver), reception.at, Some(now));
+            let copy = copy_of::<P>(&reception.frame, receiver);
+            if reception.frame.beyond {
+                observer.strayed(&copy, reception.at, Some(now));
+            } else {
+                observer.delivered(&copy, reception.at, Some(now));
+            }
         }
         if let Some(known) = self.powers.get_mut(receiver.index()) {
+            let mut next = 0;
             for reception in arrived.iter() {
                 let Frame { sender, sequence, .. } = reception.frame;
-                let of_it = known.iter().find(|(frame, _)| frame.holds(sender, sequence));
-                powers.push(of_it.map_or(f32::NAN, |(_, power)| *power));
+                // Both are in order of time, but for what arrives at the same instant: it is hardly ever another than the next.
+                let (before, after) = known.split_at(next);
+                let is_it = |entry: &&(FrameId, f32)| entry.0.holds(sender, sequence);
+                let place = after.iter().position(|entry| is_it(&entry)).map(|place| next + place);
+                let place = place.or_else(|| before.iter().position(|entry| is_it(&entry)));
+                powers.push(place.map_or(f32::NAN, |place| known[place].1));
+                next = place.unwrap_or(next);
             }
             known.clear();
         }
@@ -222,7 +256,11 @@ impl<P: Protocol> Air<P> {
         for (receiver, inbox) in (0..).map(ActorId).zip(&self.inboxes) {
             for reception in inbox.waiting() {
                 let copy = copy_of::<P>(&reception.frame, receiver);
-                if reception.at <= end {
+                if reception.frame.beyond {
+                    if reception.at <= end {
+                        observer.strayed(&copy, reception.at, None);
+                    }
+                } else if reception.at <= end {
                     observer.delivered(&copy, reception.at, None);
                 } else {
                     observer.in_flight(&copy, Some(reception.at).filter(|at| *at < SimTime::NEVER));

@@ -15,11 +15,14 @@ use crate::happenings::Observer;
 use crate::metrics::HeaderBytes;
 use crate::motion::World;
 use crate::protocol::{Concluded, Frame, Output, Protocol};
-use crate::radio::{Fates, FrameId, Links, Listener, Medium, Reach};
+use crate::radio::{Fates, FrameId, Listener, Medium, Reach};
 
+mod audience;
 mod encode;
 mod hearing;
 mod transmit;
+
+use audience::Audiences;
 
 /// A message of the present frame, and the robot that it is for if it is for one.
 struct Spoken<M> {
@@ -62,6 +65,13 @@ pub struct Air<P: Protocol> {
     payload: BytesMut,
     position: Vec2,
     listeners: Vec<Listener>,
+    /// Who heard robots that have not moved since, where that is more than a question of distance.
+    audiences: Audiences,
+    /// Who may hear the present sender though it counts as out of range: no copy is offered to it, and what reaches it is counted apart. Looked up by number
+    /// while a frame is handed over, or decided: `strays` are those of it then.
+    beyond: Vec<Listener>,
+    is_beyond: Vec<bool>,
+    strays: Vec<ActorId>,
     /// While a frame for some of them is under way, all of them; else a buffer.
     all_listeners: Vec<Listener>,
     all_hindrances: Vec<f64>,
@@ -110,6 +120,10 @@ impl<P: Protocol> Air<P> {
             payload: BytesMut::with_capacity(256),
             position: Vec2::zeros(),
             listeners: Vec::new(),
+            audiences: Audiences::default(),
+            beyond: Vec::new(),
+            is_beyond: vec![false; robots],
+            strays: Vec::new(),
             all_listeners: Vec::new(),
             all_hindrances: Vec::new(),
             aboard: Vec::new(),
@@ -172,7 +186,11 @@ impl<P: Protocol> Air<P> {
                     });
                 });
             }
-            Reach::Links(links) => find_linked(links.as_ref(), world, now, sender, listeners),
+            Reach::Links(links) => {
+                self.beyond.clear();
+                let found = [listeners, &mut self.beyond];
+                self.audiences.look_up(links.as_ref(), world, now, sender, found);
+            }
         }
         self.hindrances.clear();
         if faults.trouble_links() {
@@ -221,18 +239,4 @@ impl<P: Protocol> Air<P> {
         }
         Ok(())
     }
-}
-
-/// Adds to `listeners` who is in range of `sender` at `now` as `links` say.
-#[inline(never)]
-fn find_linked(links: &dyn Links, world: &World, now: SimTime, sender: ActorId, listeners: &mut Vec<Listener>) {
-    let here = world.position(sender, now);
-    world.for_each_around(here, now, links.farthest(), |id, there| {
-        if id != sender && links.connects((sender, here), (id, there)) {
-            listeners.push(Listener {
-                id,
-                sender: here - there,
-            });
-        }
-    });
 }

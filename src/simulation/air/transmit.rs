@@ -153,6 +153,30 @@ impl<P: Protocol> Air<P> {
         }
     }
 
+    /// Has the medium think of those, too, who count as out of range.
+    #[inline(never)]
+    fn add_beyond(&mut self, now: SimTime, sender: ActorId, place: Surroundings<'_>) {
+        for listener in &self.beyond {
+            self.is_beyond[listener.id.index()] = true;
+            if place.faults.trouble_links() {
+                let there = place.world.position(listener.id, now);
+                let loss = place.faults.link_loss((sender, self.position), (listener.id, there));
+                self.hindrances.push(loss);
+            }
+        }
+        self.listeners.extend_from_slice(&self.beyond);
+    }
+
+    /// Leaves the listeners that were there before.
+    #[inline(never)]
+    fn leave_out_beyond(&mut self, in_range: usize) {
+        self.listeners.truncate(in_range);
+        self.hindrances.truncate(in_range);
+        for listener in &self.beyond {
+            self.is_beyond[listener.id.index()] = false;
+        }
+    }
+
     /// Transmits the messages `aboard` to the present listeners, for whom they share one fate each. `ADDRESSED`: whether one at least
     /// is for one robot.
     // Inlined where a frame has one message, nearly always, the loops over what is aboard are gone.
@@ -167,6 +191,10 @@ impl<P: Protocol> Air<P> {
     ) {
         let Frame { sender, sequence, .. } = aboard[0].frame;
         let number = Numbers::next(&mut self.numbers[sender.index()].frame);
+        let in_range = self.listeners.len();
+        if !self.beyond.is_empty() && aboard.iter().any(|spoken| spoken.to.is_none()) {
+            self.add_beyond(now, sender, place);
+        }
         if !self.hindrances.is_empty() {
             self.hinder(sender, number, place.faults);
         }
@@ -191,11 +219,15 @@ impl<P: Protocol> Air<P> {
             self.prefetch_fates(P::topic(aboard[0].frame.message.borrow()), observer);
         }
         for (receiver, cause) in self.fates.losses.drain(..) {
+            if self.is_beyond[receiver.index()] {
+                continue;
+            }
             for at_receiver in copies_for::<P, ADDRESSED>(receiver, true, aboard) {
                 observer.lost(&at_receiver.copy(receiver), cause, now);
             }
         }
         for arrival in self.fates.arrivals.drain(..) {
+            debug_assert!(!self.is_beyond[arrival.receiver.index()], "a medium with links decides later");
             if self.tell_reached {
                 self.reached.push(arrival.receiver);
             }
@@ -211,6 +243,9 @@ impl<P: Protocol> Air<P> {
         }
         if !self.fates.open.is_empty() {
             self.await_fates::<ADDRESSED>(aboard);
+        }
+        if self.listeners.len() > in_range {
+            self.leave_out_beyond(in_range);
         }
         if !self.fates.conclusions.is_empty() {
             self.tell_conclusions(now, observer);
@@ -230,10 +265,17 @@ impl<P: Protocol> Air<P> {
     fn await_fates<const ADDRESSED: bool>(&mut self, aboard: &[Spoken<P::Heard>]) {
         for receiver in self.fates.open.drain(..) {
             let inbox = &mut self.inboxes[receiver.index()];
+            let beyond = self.is_beyond[receiver.index()];
             for at_receiver in copies_for::<P, ADDRESSED>(receiver, true, aboard) {
+                // What is for a robot out of range and goes to everybody's ears was given up before.
+                if beyond && ADDRESSED && at_receiver.address == Address::Me {
+                    continue;
+                }
+                let mut frame = at_receiver.into_frame();
+                frame.beyond = beyond;
                 inbox.push(Reception {
                     at: SimTime::NEVER,
-                    frame: at_receiver.into_frame(),
+                    frame,
                     displacement: [0.0; 2],
                 });
             }

@@ -1,5 +1,6 @@
 //! What holds whatever the technology, the swarm, the walls, the jammers: every copy has one fate, drivers agree, common random numbers.
 
+use std::cell::Cell;
 use std::collections::BTreeSet;
 
 use desim::engine::SimTime;
@@ -7,6 +8,7 @@ use desim::experiment::run_trial;
 use desim::scenario::parse;
 use desim::simulation::DriverKind;
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
 use tokio_util::sync::CancellationToken;
 
 use super::{EVERYBODY, fates, scenario, with_robots};
@@ -43,46 +45,129 @@ fn access() -> impl Strategy<Value = &'static str> {
     ])
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
-    #[test]
-    fn every_copy_has_one_fate_and_drivers_agree(
-        technology in technology(), access in access(), seed in any::<u64>(), robots in 1_u32..14, power in -30.0..20.0_f64,
-        capture in prop::sample::select(vec!["", "capture: None,", "capture: 0.0,", "capture: 6.0,", "capture: inf,"]),
-        fading in prop::sample::select(vec!["None", "Rayleigh()", "Rician(k: 4.0, doppler: 20.0)", "Nakagami(m: 1.5)"]),
-        walls in prop::sample::select(vec!["Pass", "Block", "Loss(6.0)"]),
-        to in prop::sample::select(vec!["Everyone", "Next", "Robot(0)"]),
-        faults in prop::sample::select(vec![
+/// A scenario with this radio and these hindrances, whatever that makes of it.
+#[derive(Clone, Debug)]
+struct Any {
+    technology: &'static str,
+    access: &'static str,
+    capture: &'static str,
+    fading: &'static str,
+    walls: &'static str,
+    to: &'static str,
+    faults: &'static str,
+    noise: &'static str,
+    seed: u64,
+    robots: u32,
+    power: f64,
+    queue: u32,
+    payload: u16,
+    drift: f64,
+}
+
+fn any_air() -> impl Strategy<Value = Any> {
+    let words = (
+        technology(),
+        access(),
+        prop::sample::select(vec!["", "capture: None,", "capture: 0.0,", "capture: 6.0,", "capture: inf,"]),
+        prop::sample::select(vec!["None", "Rayleigh()", "Rician(k: 4.0, doppler: 20.0)", "Nakagami(m: 1.5)"]),
+        prop::sample::select(vec!["Pass", "Block", "Loss(6.0)"]),
+        prop::sample::select(vec!["Everyone", "Next", "Robot(0)"]),
+        prop::sample::select(vec![
             "", "Silence(robots: [0], at: 1.0, lasts: For(0.7))", "Mute(robots: [0], at: 0.4, lasts: For(1.0)), Deaf(robots: [0], at: 1.2)",
             "Crash(robots: [0], at: 0.9, lasts: For(0.333))", "Partition(line: ((0.1, -5.0), (0.0, 5.0)), during: Between(0.5, 1.5))",
         ]),
-        noise in prop::sample::select(vec![
+        prop::sample::select(vec![
             "", "Jammer(at: (1.0, 1.0), power: 5.0, from: 0.3, until: 1.7, pulses: (0.003, 0.01))", "Jammer(at: (0.0, 0.0), power: -20.0), Background(power: -90.0)",
         ]),
-        queue in 1_u32..5, payload in 0_u16..40,
-    ) {
-        let text = format!(
-            "Scenario(name: \"any\", seed: {seed}, time_limit: 3.0, control: (period: 0.2), faults: [{faults}], \
-             arena: (size: (6.0, 6.0), obstacles: [Wall(from: (0.3, -2.0), to: (0.3, 2.0)), Disc(at: (-1.5, 1.0), radius: 0.3)]), \
-             swarm: (robots: {robots}, deploy: Uniform), protocol: Traffic(when: Poisson(15.0), payload: {payload}, to: {to}), \
-             radio: Shared(technology: {technology}, {access} {capture} transmit_power: {power:?}, transmit_power_spread: 3.0, \
-             shadowing: (sigma: 4.0, decorrelation: 2.0), fading: {fading}, walls: {walls}, noise: [{noise}], queue: {queue}))"
-        );
-        let scenario = match parse("any.ron", &text, &[]) {
-            Ok(scenario) => scenario,
-            Err(report) => {
-                // Payloads that never fit are refused.
-                let report = report.to_string();
-                prop_assert!(report.contains("payload") || report.contains("slot"), "{}", report);
-                return Ok(());
-            }
+    );
+    let numbers = (
+        any::<u64>(),
+        1_u32..14,
+        -30.0..20.0_f64,
+        1_u32..5,
+        0_u16..40,
+        prop::sample::select(vec![0.0, 50.0, 30_000.0]),
+    );
+    (words, numbers).prop_map(|(words, (seed, robots, power, queue, payload, drift))| {
+        let (technology, access, capture, fading, walls, to, faults, noise) = words;
+        Any {
+            technology,
+            access,
+            capture,
+            fading,
+            walls,
+            to,
+            faults,
+            noise,
+            seed,
+            robots,
+            power,
+            queue,
+            payload,
+            drift,
+        }
+    })
+}
+
+/// Runs it under both drivers: how many frames were sent.
+fn check(any: &Any) -> Result<u64, TestCaseError> {
+    let Any {
+        technology,
+        access,
+        capture,
+        fading,
+        walls,
+        to,
+        faults,
+        noise,
+        seed,
+        robots,
+        power,
+        queue,
+        payload,
+        drift,
+    } = any;
+    let text = format!(
+        "Scenario(name: \"any\", seed: {seed}, time_limit: 3.0, control: (period: 0.2, clock_drift: {drift:?}), faults: [{faults}], \
+         arena: (size: (6.0, 6.0), obstacles: [Wall(from: (0.3, -2.0), to: (0.3, 2.0)), Disc(at: (-1.5, 1.0), radius: 0.3)]), \
+         swarm: (robots: {robots}, deploy: Uniform), protocol: Traffic(when: Poisson(15.0), payload: {payload}, to: {to}), \
+         radio: Shared(technology: {technology}, {access} {capture} transmit_power: {power:?}, transmit_power_spread: 3.0, \
+         shadowing: (sigma: 4.0, decorrelation: 2.0), fading: {fading}, walls: {walls}, noise: [{noise}], queue: {queue}))"
+    );
+    let scenario = match parse("any.ron", &text, &[]) {
+        Ok(scenario) => scenario,
+        Err(report) => {
+            // Payloads that never fit are refused, and slots that leave no room.
+            let report = report.to_string();
+            prop_assert!(report.contains("payload") || report.contains("slot"), "{}", report);
+            return Ok(0);
+        }
+    };
+    let run = |driver| run_trial(&scenario, 0, driver, &CancellationToken::new()).expect("the trial runs");
+    let [inline, actors] = [run(DriverKind::Inline), run(DriverKind::Actors)];
+    prop_assert_eq!(&inline.ledger, &actors.ledger);
+    prop_assert_eq!(inline.digest, actors.digest);
+    let _ = fates(&inline);
+    Ok(inline.air.iter().flat_map(|air| &air.robots).map(|robot| robot.frames).sum())
+}
+
+/// Over so many frames as `DESIM_FRAMES` says: few by default, a million before a release.
+#[test]
+fn every_copy_has_one_fate_and_drivers_agree() {
+    let wanted = std::env::var("DESIM_FRAMES").map_or(5_000, |frames| frames.parse().expect("a number of frames"));
+    let sent = Cell::new(0_u64);
+    while sent.get() < wanted {
+        let mut runner = TestRunner::new(ProptestConfig {
+            cases: 20,
+            ..ProptestConfig::with_source_file(file!())
+        });
+        let run = |any: Any| {
+            sent.set(sent.get() + check(&any)?);
+            Ok(())
         };
-        let run = |driver| run_trial(&scenario, 0, driver, &CancellationToken::new()).expect("the trial runs");
-        let [inline, actors] = [run(DriverKind::Inline), run(DriverKind::Actors)];
-        prop_assert_eq!(&inline.ledger, &actors.ledger);
-        prop_assert_eq!(inline.digest, actors.digest);
-        let _ = fates(&inline);
+        runner.run(&any_air(), run).unwrap_or_else(|failure| panic!("{failure}"));
     }
+    println!("{} frames", sent.get());
 }
 
 /// Who got which of whose frames, in open-loop broadcast.
@@ -131,15 +216,17 @@ impl desim::simulation::Observer for InOrder {
 /// more the digests differ.
 #[test]
 fn rounds_of_control_steps_do_not_show() {
-    for radio in [
-        "technology: Ieee802154()",
-        "technology: Wifi(standard: B, rate: 11e6)",
-        "technology: Custom(bit_rate: None), access: None",
+    for (radio, drift) in [
+        ("technology: Ieee802154()", 0.0),
+        ("technology: Ieee802154()", 20_000.0),
+        ("technology: Wifi(standard: B, rate: 11e6)", 0.0),
+        ("technology: Custom(bit_rate: None), access: None", 0.0),
     ] {
         let scenario = scenario(1.0, "", EVERYBODY, radio);
         let mut setup = desim::simulation::Setup::lasting(desim::engine::Span::from_secs(4.0));
         setup.own_radio = Some(std::sync::Arc::new(scenario.radio.shared().expect("shared").clone()));
         setup.control.period = desim::quantity::Positive::new(0.05);
+        setup.control.clock_drift = desim::quantity::NonNegative::new(drift);
         setup.motion.tick = desim::quantity::Positive::new(0.05);
         let robots = || {
             let timing = desim::kinds::traffic::Timing::Poisson(desim::quantity::Positive::new(20.0));

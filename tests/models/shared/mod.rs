@@ -6,6 +6,7 @@ mod disk;
 mod forms;
 mod invariants;
 mod ns3;
+mod predictions;
 
 use desim::experiment::run_trial;
 use desim::metrics::{TopicFates, TrialRecord};

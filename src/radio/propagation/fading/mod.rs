@@ -81,6 +81,12 @@ impl Fading {
         }
     }
 
+    /// Whether links change while both ends stand.
+    #[must_use]
+    pub fn drifts(&self) -> bool {
+        self.drifts
+    }
+
     /// The power gain between `a`, the place of the robot with the lower number, and `b`, that of the other, in metres, `at_seconds` after the start. The order makes it the same in both directions.
     #[must_use]
     pub fn gain(&self, a: Vec2, b: Vec2, at_seconds: f64) -> f64 {
