@@ -95,7 +95,23 @@ fn sections(scenario: &Scenario) -> Vec<Problem> {
         let placed = move |problem| Problem::of_section(section, problem).with(also);
         problems.into_iter().map(placed)
     });
-    found.collect()
+    let mut found: Vec<_> = found.collect();
+    if found.is_empty() {
+        found.extend(statuses_fit(scenario));
+    }
+    found
+}
+
+/// Statuses whose length is known, and that no frame can carry. Other messages are lost one by one, with that cause.
+fn statuses_fit(scenario: &Scenario) -> Option<Problem> {
+    let bytes = scenario.protocol.status_bytes()?;
+    let topics = scenario.topics().len();
+    let most = scenario.radio.longest_message(topics, scenario.gossip.piggyback)?;
+    (bytes > f64::from(most)).then(|| {
+        let message = format!("a status of {bytes} bytes never fits a frame of this radio, which carries at most {most}");
+        let help = "take a `technology` with longer frames, or a protocol with shorter statuses";
+        Problem::new("radio", message, help).with(&["protocol"])
+    })
 }
 
 fn periods(scenario: &Scenario) -> Vec<Problem> {

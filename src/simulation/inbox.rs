@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::engine::{SimTime, prefetch_all, prefetch_end};
+use crate::engine::{SimTime, prefetch, prefetch_all, prefetch_end};
 use crate::protocol::{Frame, Reception};
 use crate::radio::FrameId;
 
@@ -30,6 +30,13 @@ impl<M> Inbox<M> {
     #[inline]
     pub fn prefetch_end(&self) {
         prefetch_end(&self.waiting);
+    }
+
+    /// Asks for what came last.
+    pub fn prefetch_last(&self) {
+        if let Some(last) = self.waiting.last() {
+            prefetch(last);
+        }
     }
 
     /// Asks for all that is waiting.

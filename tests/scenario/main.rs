@@ -8,4 +8,5 @@ mod files;
 mod fuzz;
 mod gossip;
 mod kinds;
+mod radio;
 mod warnings;

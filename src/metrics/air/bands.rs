@@ -30,10 +30,16 @@ impl Bands {
 
     /// The band of a distance, metres.
     pub fn of(&self, distance: f32) -> usize {
-        let distance = f64::from(distance);
-        self.ends
-            .partition_point(|end| *end <= distance)
-            .min(self.ends.len() - 1)
+        // What is at least 2^e is beyond the end at 2^e and those before, and below the end at twice that.
+        let e = (distance.to_bits() >> (f32::MANTISSA_DIGITS - 1)) as i32 - (f32::MAX_EXP - 1);
+        let before = e * PER_DOUBLING - FIRST + 1;
+        let Ok(before) = usize::try_from(before) else {
+            return 0;
+        };
+        let last = self.ends.len() - 1;
+        let between = self.ends.get(before..(before + PER_DOUBLING as usize - 1).min(last));
+        let passed = between.map_or(0, |ends| ends.iter().filter(|end| **end <= f64::from(distance)).count());
+        (before + passed).min(last)
     }
 
     /// From where to where a band goes, metres.

@@ -15,7 +15,7 @@ use super::link::{self, LinkBudget};
 use super::receiver::Receiver;
 use super::station::Radio;
 use super::{Shared, range};
-use crate::engine::{Purpose, Span, Streams};
+use crate::engine::{Purpose, Span, Streams, outgrows_cache};
 use crate::quantity::{NonNegative, Positive};
 use crate::radio::disk_config::{DiskConfig, LatencyConfig, LossConfig, WallsConfig};
 use crate::radio::propagation::{Fading, PathLoss, Shadowing, Walls};
@@ -190,6 +190,7 @@ impl Shared {
             scans: site.streams.keyed(SCANS),
             room: config.queue as usize,
             longest: Span::ZERO,
+            prefetches: outgrows_cache(robots),
             audiences: Audiences::new(robots, config.noise.len(), site.body_radius),
             spare: Vec::new(),
             shortest: phy.airtime(0),

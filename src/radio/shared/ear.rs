@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use super::burst::BurstId;
-use crate::engine::{SimTime, Span};
+use crate::engine::{SimTime, Span, prefetch};
 
 /// A burst at one robot.
 #[derive(Clone, Copy, Debug)]
@@ -70,6 +70,16 @@ impl Union {
 }
 
 impl Ear {
+    /// Asks for what it heard last.
+    pub fn prefetch_contents(&self) {
+        if let Some(last) = self.heard.back() {
+            prefetch(last);
+        }
+        if let Some(last) = self.deaf.back() {
+            prefetch(last);
+        }
+    }
+
     /// Takes up a burst, and forgets what ended before `since`.
     pub fn hear(&mut self, heard: Heard, since: SimTime) {
         while self.heard.front().is_some_and(|oldest| oldest.ends < since) {

@@ -2,16 +2,33 @@
 
 use super::access::{self, Next};
 use super::agenda::Task;
+use super::audience::Link;
 use super::burst::{Burst, BurstId, Content};
-use super::ear::Heard;
+use super::ear::{Ear, Heard};
 use super::link::{NOBODY, Source};
 use super::receiver::dbm;
 use super::station::Doing;
 use super::Shared;
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, prefetch};
 use crate::geometry::Vec2;
 use crate::radio::draw::FrameCopy;
+use crate::radio::technology::Waveform;
 use crate::radio::{Fate, Fates, FrameId, LossCause, Outcome, Places};
+
+/// So many links ahead of the present one ears are asked for, and what they hold.
+const EARS_AHEAD: usize = 12;
+const CONTENTS_AHEAD: usize = 6;
+
+/// Asks for the ears of those who take up a burst soon after the one at `place` does.
+#[inline]
+fn prefetch_ears(ears: &[Ear], audience: &[Link], place: usize) {
+    if let Some(link) = audience.get(place + EARS_AHEAD) {
+        prefetch(&ears[link.robot.index()]);
+    }
+    if let Some(link) = audience.get(place + CONTENTS_AHEAD) {
+        ears[link.robot.index()].prefetch_contents();
+    }
+}
 
 impl Shared {
     /// `robot` sends the head of its queue on `channel`.
@@ -112,7 +129,13 @@ impl Shared {
         let audience = self
             .audiences
             .look_up(heard.begins, source, here, &self.budget, places);
-        for link in audience.iter().filter(|link| link.power > 0.0) {
+        for (place, link) in audience.iter().enumerate() {
+            if self.prefetches {
+                prefetch_ears(&self.ears, audience, place);
+            }
+            if link.power <= 0.0 {
+                continue;
+            }
             heard.power = link.power;
             let ear = &mut self.ears[link.robot.index()];
             ear.hear(heard, since);
@@ -157,7 +180,7 @@ impl Shared {
             }
             Content::Acknowledgement { of, to } => {
                 let waits = self.radios[to.index()].doing == Doing::Waits(of);
-                let gets = waits && self.verdict(id, &burst, to).is_ok();
+                let gets = waits && self.verdict(id, (&burst, &self.receiver.waveform(&burst)), to).is_ok();
                 gets.then(|| self.conclude(now, to, access::Outcome::Acknowledged, fates))?
             }
             Content::Noise => None,
@@ -172,6 +195,11 @@ impl Shared {
         let (frame, to) = (head.frame, head.to);
         let mut open = std::mem::take(&mut head.open);
         let mut arrived = head.arrived;
+        let waveform = self.receiver.waveform(burst);
+        if self.prefetches {
+            open.iter().for_each(|open| prefetch(&self.ears[open.receiver.index()]));
+            open.iter().for_each(|open| self.ears[open.receiver.index()].prefetch_contents());
+        }
         open.retain_mut(|open| {
             let receiver = open.receiver;
             let towards = burst.position - places.position(receiver, now);
@@ -182,7 +210,7 @@ impl Shared {
             {
                 open.power = dbm(heard.power) as f32;
             }
-            if let Err(why) = self.verdict(id, burst, receiver) {
+            if let Err(why) = self.verdict(id, (burst, &waveform), receiver) {
                 // Of the channels that it did not listen to it knows nothing.
                 if self.listens_to(receiver, burst) {
                     open.cause = why;
@@ -207,7 +235,12 @@ impl Shared {
     }
 
     /// Whether `receiver` has got a burst that ends now, or why not.
-    fn verdict(&self, id: BurstId, burst: &Burst, receiver: ActorId) -> Result<(), LossCause> {
+    fn verdict(
+        &self,
+        id: BurstId,
+        (burst, waveform): (&Burst, &Waveform),
+        receiver: ActorId,
+    ) -> Result<(), LossCause> {
         if burst.cut {
             return Err(LossCause::SenderDown);
         }
@@ -229,7 +262,7 @@ impl Shared {
         if !self.receiver.is_orthogonal() && ear.is_deaf(burst.begins, burst.ends) {
             return Err(LossCause::HalfDuplex);
         }
-        self.receiver.judge(ear, heard, burst, receiver)
+        self.receiver.judge(ear, heard, (burst, waveform), receiver)
     }
 
     /// Whether `receiver` listens on the channel of a burst: it did as it began.
@@ -251,8 +284,11 @@ impl Shared {
             return false;
         };
         let radio = &self.radios[to.index()];
-        if !radio.sends || matches!(radio.doing, Doing::Turns | Doing::Sends(_)) || self.verdict(id, burst, to).is_err()
-        {
+        if !radio.sends || matches!(radio.doing, Doing::Turns | Doing::Sends(_)) {
+            return false;
+        }
+        let waveform = self.receiver.waveform(burst);
+        if self.verdict(id, (burst, &waveform), to).is_err() {
             return false;
         }
         let begins = now + answering.after;

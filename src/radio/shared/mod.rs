@@ -78,6 +78,8 @@ pub struct Shared {
     battery: Option<f64>,
     /// Who takes up what robots and jammers send.
     audiences: Audiences,
+    /// Whether memory is asked for before it is needed.
+    prefetches: bool,
     /// Buffers.
     spare: Vec<Vec<Open>>,
     shortest: Span,

@@ -2,7 +2,7 @@
 
 use super::Air;
 use super::transmit::copy_of;
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, prefetch};
 use crate::faults::Health;
 use crate::happenings::Observer;
 use crate::motion::World;
@@ -92,6 +92,9 @@ impl<P: Protocol> Air<P> {
 
     /// Lets the fates of open copies of `frame` take effect, which the radio has decided at `now`.
     fn decide(&mut self, now: SimTime, frame: FrameId, observer: &mut impl Observer) {
+        if self.prefetches {
+            self.prefetch_decided();
+        }
         for (receiver, cause) in self.fates.losses.drain(..) {
             let mut is_beyond = false;
             let lost = self.inboxes[receiver.index()].lose(frame, |reception| {
@@ -142,6 +145,16 @@ impl<P: Protocol> Air<P> {
         for robot in self.strays.drain(..) {
             self.is_beyond[robot.index()] = false;
         }
+    }
+
+    /// Asks for the inboxes in which decided copies wait.
+    fn prefetch_decided(&self) {
+        let receivers = || {
+            let arrivals = self.fates.arrivals.iter().map(|arrival| arrival.receiver);
+            arrivals.chain(self.fates.losses.iter().map(|loss| loss.0))
+        };
+        receivers().for_each(|receiver| prefetch(&self.inboxes[receiver.index()]));
+        receivers().for_each(|receiver| self.inboxes[receiver.index()].prefetch_last());
     }
 
     /// From `now` on the radio of `robot` does what its `health` allows. A copy is lost if its receiver cannot hear at the instant of its arrival;

@@ -3,7 +3,7 @@
 use std::borrow::Borrow as _;
 
 use super::{Air, Numbers, Spoken, Surroundings};
-use crate::engine::{ActorId, SimTime};
+use crate::engine::{ActorId, SimTime, prefetch};
 use crate::faults::Faults;
 use crate::happenings::{Copy, Observer};
 use crate::protocol::{Address, Frame, MessageSize, Protocol, Reception, Topic};
@@ -263,6 +263,10 @@ impl<P: Protocol> Air<P> {
     /// Puts copies whose fates are open into the inboxes, where they wait for them.
     #[inline(never)]
     fn await_fates<const ADDRESSED: bool>(&mut self, aboard: &[Spoken<P::Heard>]) {
+        if self.prefetches {
+            self.fates.open.iter().for_each(|receiver| prefetch(&self.inboxes[receiver.index()]));
+            self.fates.open.iter().for_each(|receiver| self.inboxes[receiver.index()].prefetch_end());
+        }
         for receiver in self.fates.open.drain(..) {
             let inbox = &mut self.inboxes[receiver.index()];
             let beyond = self.is_beyond[receiver.index()];

@@ -2,7 +2,7 @@
 
 use desim::metrics::TrialRecord;
 
-use super::{EQUAL_LOSS, EVERYBODY, HIDDEN, delivery, measured, runs, scenario, with_robots};
+use super::{EQUAL_LOSS, EVERYBODY, HIDDEN, delivery, fates, measured, runs, scenario, with_robots};
 
 const IEEE802154: &str = "technology: Ieee802154()";
 /// 1.184 ms for 20 bytes.
@@ -170,6 +170,79 @@ fn saturated_dcf() {
                 8.0 * received as f64 / record.simulated.as_secs()
             };
             measured(&records, goodput).agrees(&format!("{robots} robots at {rate}"), expected, 0.0, 0.03 * expected);
+        }
+    }
+}
+
+/// The share of frames of 37 bytes that 802.15.4 loses at a mean SNR of 10 dB where each has a gain of its own, exponential: the integral of what it loses at each.
+#[test]
+fn rayleigh_errors() {
+    // 16-ary orthogonal signals, non-coherent: 8/15 · 1/16 · Σ (−1)^k C(16, k) e^(20 s (1/k − 1)).
+    let bit_error = |s: f64| {
+        let mut choose = 16.0;
+        let mut sum = 0.0;
+        for k in 2..=16 {
+            let k = f64::from(k);
+            choose *= (17.0 - k) / k;
+            sum += (if k % 2.0 == 0.0 { choose } else { -choose }) * (20.0 * s * (1.0 / k - 1.0)).exp();
+        }
+        8.0 / 15.0 / 16.0 * sum
+    };
+    let bits = 8.0 * 37.0;
+    for mean_db in [4.0, 10.0, 16.0] {
+        let mean = 10_f64.powf(mean_db / 10.0);
+        let step = 1e-4;
+        let lost: f64 = (0..400_000)
+            .map(|place| (f64::from(place) + 0.5) * step)
+            .map(|gain: f64| (1.0 - (1.0 - bit_error(mean * gain).min(0.5)).powf(bits)) * (-gain).exp() * step)
+            .sum();
+        if mean_db == 10.0 {
+            assert!((lost - 0.0712).abs() < 1e-4, "{lost}");
+        }
+        // The noise is 0.509 dB below the sensitivity.
+        let power = mean_db - 95.509 + 50.0;
+        let radio = format!(
+            "{IEEE802154}, access: Aloha(), fading: Rayleigh(doppler: 5000.0), queue: 1000, \
+             path_loss: LogDistance(exponent: 0.000001, reference_loss: 50.0), transmit_power: {power:?}"
+        );
+        let traffic = "when: Poisson(200.0), payload: 20, senders: Given([0]), to: Robot(1)";
+        let records = runs(&with_robots(scenario(60.0, traffic, EVERYBODY, &radio), 2), 6);
+        // Of the sum of 32 waves there is a little less often nothing left than of a normal field.
+        measured(&records, delivery).agrees(&format!("{mean_db} dB"), 1.0 - lost, 0.0, 0.03 * lost);
+    }
+}
+
+/// A robot that counts as out of range gets what it gets, and that is counted apart: here three frames in ten. It is neither among the copies offered nor among those delivered.
+#[test]
+fn robots_out_of_range_hear_now_and_then() {
+    for (below_db, chance) in [(0.0, 0.5), (-2.4, 0.3)] {
+        // Rayleigh: half of the frames at one level, of e^(−γ/γ̄) = 1/2; three in ten 2.4 dB below that.
+        let radio = |power: f64| {
+            format!(
+                "{IEEE802154}, access: Aloha(), fading: Rayleigh(doppler: 5000.0), queue: 1000, \
+                 path_loss: LogDistance(exponent: 0.000001, reference_loss: 50.0), transmit_power: {power:?}"
+            )
+        };
+        let at = |power: f64, seconds: f64, trials: u32| {
+            let traffic = "when: Poisson(200.0), payload: 20, senders: Given([0])";
+            runs(&with_robots(scenario(seconds, traffic, EVERYBODY, &radio(power)), 2), trials)
+        };
+        // The level at which half come through, as the radio itself has it.
+        let threshold = (-500..-300)
+            .map(|tenths| f64::from(tenths) / 10.0)
+            .find(|power| fates(&at(*power, 1.0, 1)[0]).offered > 0)
+            .expect("some power suffices");
+        let records = at(threshold + below_db, 20.0, 6);
+        let strayed = |record: &TrialRecord| {
+            let air = record.air.as_ref().expect("a shared radio");
+            air.robots[1].strayed as f64 / air.robots[0].on_air as f64
+        };
+        if below_db < 0.0 {
+            assert!(records.iter().all(|record| fates(record).offered == 0), "nothing is offered");
+            measured(&records, strayed).agrees("strayed", chance, 0.0, 0.03);
+        } else {
+            measured(&records, delivery).agrees("in range", chance, 0.0, 0.03);
+            assert!(records.iter().all(|record| strayed(record) == 0.0));
         }
     }
 }

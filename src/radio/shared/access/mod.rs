@@ -140,7 +140,8 @@ impl Station<'_> {
         if heard.is_noise || !self.receiver.detects(self.ear, heard) {
             return None;
         }
-        let verdict = self.receiver.judge(self.ear, heard, burst, self.robot);
+        let waveform = self.receiver.waveform(burst);
+        let verdict = self.receiver.judge(self.ear, heard, (burst, &waveform), self.robot);
         Some(verdict.is_ok())
     }
 
