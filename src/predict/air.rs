@@ -48,9 +48,8 @@ fn is_even(scene: &Scene<'_>, radio: &SharedConfig) -> bool {
 }
 
 /// The stream of `senders` robots, as frames.
-fn stream(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, senders: f64) -> Stream {
-    let header = scene.scenario.radio.disk().message_header_bytes;
-    let header = radio.message_header_bytes.unwrap_or(header);
+fn stream(scene: &Scene<'_>, broadcasts: Broadcasts, senders: f64) -> Stream {
+    let [_, header] = scene.scenario.header_bytes();
     Stream {
         senders,
         per_second: broadcasts.per_second,
@@ -60,7 +59,7 @@ fn stream(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, sende
 
 /// What follows from what is sent alone.
 fn sent(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, preflight: &mut Preflight) {
-    let stream = stream(scene, radio, broadcasts, 1.0);
+    let stream = stream(scene, broadcasts, 1.0);
     let airtime = radio.airtime_s(stream.payload);
     let mut push = |name, what, unit, form: Form, assumes: &str| {
         preflight.predictions.push(Prediction {
@@ -118,7 +117,7 @@ fn met(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, prefligh
         preflight.refuse("overlap_ratio", OVERLAPS, why);
         return preflight.refuse("radio.energy_J", ENERGY, why);
     }
-    let stream = stream(scene, radio, broadcasts, broadcasts.sending * (others + 1.0));
+    let stream = stream(scene, broadcasts, broadcasts.sending * (others + 1.0));
     let prediction = |name, what, unit, form: Form, assumes: &str| Prediction {
         name,
         what,

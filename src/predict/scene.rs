@@ -105,16 +105,16 @@ impl<'a> Scene<'a> {
 
     /// Bytes of a status, headers included.
     pub fn status_bytes(&self) -> f64 {
-        let radio = self.scenario.radio.disk();
         let payload = self.scenario.protocol.status_bytes().unwrap_or(0.0);
-        payload + f64::from(radio.frame_header_bytes) + f64::from(radio.message_header_bytes)
+        let [frame, message] = self.scenario.header_bytes();
+        payload + f64::from(frame) + f64::from(message)
     }
 
     /// Those of them that are another message's where a status is not the first in its frame.
     pub fn shared_bytes(&self) -> f64 {
         let shared = self.scenario.gossip.piggyback && !self.sends_statuses_alone();
         if shared {
-            f64::from(self.scenario.radio.disk().frame_header_bytes)
+            f64::from(self.scenario.header_bytes()[0])
         } else {
             0.0
         }

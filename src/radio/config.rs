@@ -69,12 +69,22 @@ impl RadioConfig {
         self.shared().is_some_and(SharedConfig::takes_time)
     }
 
+    /// Bytes that each frame carries beside its messages, and each message beside its payload, of a protocol with so many topics, whose frames carry one message each or
+    /// several.
+    #[must_use]
+    pub fn header_bytes(&self, topics: usize, several: bool) -> [u16; 2] {
+        match self {
+            Self::Disk(config) => [config.frame_header_bytes, config.message_header_bytes],
+            Self::Shared(config) => config.headers(topics, several),
+        }
+    }
+
     /// The longest payload of a message that a frame can carry, in bytes, for a protocol with so many topics, whose frames carry one message each or several. `None`:
     /// any.
     #[must_use]
     pub fn longest_message(&self, topics: usize, several: bool) -> Option<u32> {
         let shared = self.shared()?;
-        let [_, header] = shared.header_bytes(topics, several)?;
+        let [_, header] = shared.headers(topics, several);
         Some(shared.phy().max_payload.saturating_sub(header.into()))
     }
 

@@ -163,6 +163,12 @@ impl Scenario {
         self.protocol.topics(&self.detector)
     }
 
+    /// Bytes that each frame carries beside its messages, and each message beside its payload.
+    #[must_use]
+    pub fn header_bytes(&self) -> [u16; 2] {
+        self.radio.header_bytes(self.topics().len(), self.gossip.piggyback)
+    }
+
     /// The figures of its trials: those of all protocols, those of its radio, and its protocol's own.
     #[must_use]
     pub fn figures(&self) -> Registry {

@@ -178,6 +178,15 @@ impl SharedConfig {
             .unwrap_or_else(|| AccessConfig::of(&self.technology))
     }
 
+    /// Bytes that each frame carries beside its messages, and each message beside its payload.
+    #[must_use]
+    pub fn headers(&self, topics: usize, several: bool) -> [u16; 2] {
+        let message = self
+            .message_header_bytes
+            .unwrap_or_else(|| u16::from(topics > 1) + 2 * u16::from(several));
+        [self.phy().header_bytes as u16, message]
+    }
+
     /// The radio that each robot has.
     ///
     /// # Panics

@@ -91,11 +91,7 @@ impl RadioKind for SharedConfig {
     }
 
     fn header_bytes(&self, topics: usize, several: bool) -> Option<[u16; 2]> {
-        let frame = self.phy().header_bytes as u16;
-        let message = self
-            .message_header_bytes
-            .unwrap_or_else(|| u16::from(topics > 1) + 2 * u16::from(several));
-        Some([frame, message])
+        Some(self.headers(topics, several))
     }
 }
 

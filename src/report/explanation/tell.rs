@@ -190,7 +190,7 @@ fn loss(cause: &str) -> &str {
         _ if cause == LossCause::Channel.name() => "lost in the channel",
         _ if cause == LossCause::LinkFault.name() => "stopped by a fault of the link",
         _ if cause == LossCause::ReceiverDown.name() => "lost: the receiver was down",
-        _ if cause == LossCause::BelowSensitivity.name() => "sent to it alone, and out of range",
+        _ if cause == LossCause::BelowSensitivity.name() => "lost: too weak, out of range or in a fade",
         _ if cause == LossCause::Collision.name() => "lost in a collision",
         _ if cause == LossCause::HalfDuplex.name() => "lost: the receiver was sending itself",
         _ if cause == LossCause::AccessFailure.name() => "never sent: the channel was busy",

@@ -242,16 +242,15 @@ pub fn headers(input: &PageInput) -> Figure {
         bars.iter().map(|bar| bar.2).collect(),
         Some(labels),
     ));
+    let [of_frame, of_message] = input.scenario.header_bytes();
     Figure {
         id: "headers".into(),
         title: "Payload and headers".into(),
         caption: format!(
-            "What a robot sends on average {}, split into the bytes of the messages and of their headers, {} for each frame and {} for \
+            "What a robot sends on average {}, split into the bytes of the messages and of their headers, {of_frame} for each frame and {of_message} for \
              each message in it; the number is the share of headers. Small messages pay most for their headers: sending several in one \
              frame saves some of that.",
-            input.in_trials(),
-            input.scenario.radio.disk().frame_header_bytes,
-            input.scenario.radio.disk().message_header_bytes
+            input.in_trials()
         ),
         panels: vec![if bars.iter().all(|bar| bar.1 + bar.2 == 0.0) {
             Panel::words("", "Nothing was sent.")
