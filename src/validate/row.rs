@@ -1,0 +1,129 @@
+//! An oracle: a form, and the scenario by which it is measured.
+
+use crate::metrics::TrialRecord;
+use crate::statistics::Part;
+
+/// How a figure is read off a finished trial: a numerator and a denominator, both 0 where the trial tells nothing.
+pub(super) type Reading = Box<dyn Fn(&TrialRecord) -> Part + Send + Sync>;
+
+/// What a form is wrong by, as far as that is known, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Margin {
+    /// So much either way, in the unit of the row.
+    pub size: f64,
+    /// What the form leaves out.
+    pub why: &'static str,
+}
+
+/// An oracle and how it is measured.
+pub struct Row {
+    /// Its model: a word or two that many rows share.
+    pub model: &'static str,
+    /// Its name, unique among all rows.
+    pub name: String,
+    /// The form in words and symbols, with its source.
+    pub form: String,
+    /// Unit of what follows; empty for plain numbers.
+    pub unit: &'static str,
+    /// What the form gives.
+    pub expected: f64,
+    /// What the form is wrong by, if it is no exact one.
+    pub margin: Option<Margin>,
+    /// How many trials its scenario has.
+    pub trials: u32,
+    /// How finely the measurement resolves, relative: no interval is narrower. It is what counts where all trials give the same.
+    pub resolution: f64,
+    seconds: f64,
+    sections: Vec<String>,
+    reading: Reading,
+}
+
+/// How finely records keep what they hold.
+const RESOLUTION: f64 = 1e-6;
+
+impl Row {
+    /// A row of `model` that holds `expected` against what `reading` reads off trials of `seconds` whose scenario has these `sections`.
+    pub(super) fn new(
+        model: &'static str,
+        name: impl Into<String>,
+        (expected, unit): (f64, &'static str),
+        (seconds, sections): (f64, Vec<String>),
+        reading: impl Fn(&TrialRecord) -> Part + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            model,
+            name: name.into(),
+            form: String::new(),
+            unit,
+            expected,
+            margin: None,
+            trials: 20,
+            resolution: RESOLUTION,
+            seconds,
+            sections,
+            reading: Box::new(reading),
+        }
+    }
+
+    /// The same, with its form in words.
+    #[must_use]
+    pub(super) fn form(mut self, form: impl Into<String>) -> Self {
+        self.form = form.into();
+        self
+    }
+
+    /// The same, in so many trials.
+    #[must_use]
+    pub(super) fn trials(mut self, trials: u32) -> Self {
+        self.trials = trials;
+        self
+    }
+
+    /// The same, whose form is wrong by up to `size` of what it gives.
+    #[must_use]
+    pub(super) fn within(self, size: f64, why: &'static str) -> Self {
+        let size = size * self.expected.abs();
+        self.give_or_take(size, why)
+    }
+
+    /// The same, whose form is wrong by up to `size`, in its unit.
+    #[must_use]
+    pub(super) fn give_or_take(mut self, size: f64, why: &'static str) -> Self {
+        self.margin = Some(Margin { size, why });
+        self
+    }
+
+    /// The same, measured no finer than `resolution`, relative.
+    #[must_use]
+    pub(super) fn resolved(mut self, resolution: f64) -> Self {
+        self.resolution = resolution;
+        self
+    }
+
+    /// Its scenario with this seed, as a file that `desim scenario` runs.
+    #[must_use]
+    pub fn scenario(&self, seed: u64) -> String {
+        let Self { name, form, trials, seconds, .. } = self;
+        let folder = name.replace('.', "_");
+        let mut text = format!(
+            "// {name}: {form}\nScenario(\n    name: \"{folder}\",\n    trials: {trials},\n    seed: {seed},\n    time_limit: {seconds:?},\n"
+        );
+        for section in &self.sections {
+            text.push_str(&format!("    {section},\n"));
+        }
+        text.push_str(")\n");
+        text
+    }
+
+    /// What a trial tells.
+    #[must_use]
+    pub fn read(&self, record: &TrialRecord) -> Part {
+        (self.reading)(record)
+    }
+}
+
+impl std::fmt::Debug for Row {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Row").field("name", &self.name).field("expected", &self.expected).finish_non_exhaustive()
+    }
+}
