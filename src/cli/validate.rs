@@ -112,3 +112,38 @@ impl From<ValidateError> for Failure {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::validate::{Judged, Verdict};
+
+    #[test]
+    fn the_exit_status_is_1_where_a_row_differs_and_0_where_none_does() {
+        let row = |verdict| Judged {
+            model: "loss",
+            name: "loss.a".to_owned(),
+            form: "p".to_owned(),
+            unit: "",
+            expected: 0.2,
+            measured: Some(0.2),
+            interval: Some([0.19, 0.21]),
+            margin: 0.0,
+            margin_for: None,
+            trials: 20,
+            verdict,
+            scenario: String::new(),
+        };
+        let status = |verdicts: &[Verdict]| {
+            let validation = Validation {
+                version: "1",
+                seed: SEED,
+                level: LEVEL,
+                rows: verdicts.iter().copied().map(row).collect(),
+            };
+            decision(&validation).map_err(|failure| failure.status())
+        };
+        assert_eq!(status(&[Verdict::Agrees, Verdict::Agrees]), Ok(()));
+        assert_eq!(status(&[Verdict::Agrees, Verdict::Differs]), Err(1));
+    }
+}

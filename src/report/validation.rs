@@ -53,7 +53,11 @@ const fn verdict(row: &Judged) -> &'static str {
 
 /// What the form gives, and what was measured with half of its interval: two digits of that count.
 fn numbers(row: &Judged) -> (String, String) {
-    let unit = if row.unit.is_empty() { "" } else { &format!(" {}", row.unit) };
+    let unit = if row.unit.is_empty() {
+        ""
+    } else {
+        &format!(" {}", row.unit)
+    };
     let (Some(value), Some([low, high])) = (row.measured, row.interval) else {
         return (fixed(row.expected, 5), NOTHING.to_owned());
     };
@@ -71,8 +75,13 @@ fn fixed(value: f64, decimals: usize) -> String {
 
 fn difference(row: &Judged) -> String {
     let (form, measured) = numbers(row);
-    let margin = row.margin_for.map_or_else(String::new, |why| format!(", give or take {:.2e} ({why})", row.margin));
-    format!("{} differs: the form gives {form}{margin}, {} trials {measured}. {}", row.name, row.trials, row.form)
+    let margin = row
+        .margin_for
+        .map_or_else(String::new, |why| format!(", give or take {:.2e} ({why})", row.margin));
+    format!(
+        "{} differs: the form gives {form}{margin}, {} trials {measured}. {}",
+        row.name, row.trials, row.form
+    )
 }
 
 fn conclusion(validation: &Validation) -> String {
@@ -80,7 +89,11 @@ fn conclusion(validation: &Validation) -> String {
     let differing: Vec<&str> = validation.differing().map(|row| row.name.as_str()).collect();
     match differing.len() {
         0 => format!("{all} of {all} agree."),
-        count => format!("{} of {all} agree. These differ: {}.", all - count, differing.join(", ")),
+        count => format!(
+            "{} of {all} agree. These differ: {}.",
+            all - count,
+            differing.join(", ")
+        ),
     }
 }
 
@@ -118,17 +131,29 @@ mod tests {
     fn numbers_have_as_many_digits_as_their_interval_tells() {
         let numbers = |expected, half| numbers(&judged("a", expected, half, Verdict::Agrees));
         assert_eq!(numbers(0.62831, 0.0021), ("0.6283".into(), "0.6283 ± 0.0021 µs".into()));
-        assert_eq!(numbers(1184.0, 0.00118), ("1184.000".into(), "1184.000 ± 0.001 µs".into()));
-        assert_eq!(numbers(-69.73, 1e-5), ("−69.73000".into(), "−69.73000 ± 0.00001 µs".into()));
+        assert_eq!(
+            numbers(1184.0, 0.00118),
+            ("1184.000".into(), "1184.000 ± 0.001 µs".into())
+        );
+        assert_eq!(
+            numbers(-69.73, 1e-5),
+            ("−69.73000".into(), "−69.73000 ± 0.00001 µs".into())
+        );
         assert_eq!(numbers(0.0, 0.0), ("0.00".into(), "0.00 ± 0.00 µs".into()));
     }
 
     #[test]
     fn what_differs_is_named_with_what_it_should_have_been() {
-        let rows = vec![judged("a.b", 2.0, 0.1, Verdict::Agrees), judged("a.c", 3.0, 0.1, Verdict::Differs)];
+        let rows = vec![
+            judged("a.b", 2.0, 0.1, Verdict::Agrees),
+            judged("a.c", 3.0, 0.1, Verdict::Differs),
+        ];
         let text = validation(&of(rows), Style::PLAIN);
         assert!(text.contains("1 of 2 agree. These differ: a.c."), "{text}");
-        assert!(text.contains("a.c differs: the form gives 3.00, 20 trials 3.00 ± 0.10 µs. T"), "{text}");
+        assert!(
+            text.contains("a.c differs: the form gives 3.00, 20 trials 3.00 ± 0.10 µs. T"),
+            "{text}"
+        );
         assert!(text.contains("  a.c") && text.contains("DIFFERS"), "{text}");
     }
 }

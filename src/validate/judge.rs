@@ -72,10 +72,18 @@ impl Judged {
     /// What to make of `row` of a catalogue of `all` rows, of which trials with `seed` told `parts`.
     pub(super) fn of(row: &Row, all: usize, seed: u64, parts: &[Part]) -> Self {
         let tail = (1.0 - LEVEL) / all.max(1) as f64 / 2.0;
-        let estimate = estimate(parts, tail, row.resolution);
+        let estimate = match estimate(parts, tail, row.resolution) {
+            Some((value, _)) if row.is_exact => Some((value, about(value, row.resolution))),
+            estimate => estimate,
+        };
         let margin = row.margin.as_ref().map_or(0.0, |margin| margin.size);
         let holds = |[low, high]: [f64; 2]| (low - margin..=high + margin).contains(&row.expected);
-        let agrees = estimate.is_some_and(|(_, interval)| holds(interval));
+        let each = || {
+            told(parts)
+                .into_iter()
+                .all(|[value, weight]| holds(about(value / weight, row.resolution)))
+        };
+        let agrees = estimate.is_some_and(|(_, interval)| holds(interval)) && (!row.is_exact || each());
         Self {
             model: row.model,
             name: row.name.clone(),
@@ -93,12 +101,25 @@ impl Judged {
     }
 }
 
+/// The trials that tell anything.
+fn told(parts: &[Part]) -> Vec<Part> {
+    parts.iter().copied().filter(|part| part[1] != 0.0).collect()
+}
+
+/// A share of `resolution` on either side of a value.
+fn about(value: f64, resolution: f64) -> [f64; 2] {
+    let half = resolution * value.abs();
+    [value - half, value + half]
+}
+
 /// A ratio of sums over trials and the interval that leaves out `tail` on either side: Student's, by the spread of what each trial leaves over, and no narrower than
 /// `resolution` of the value. `None` where fewer than two trials tell anything.
 fn estimate(parts: &[Part], tail: f64, resolution: f64) -> Option<(f64, [f64; 2])> {
-    let told: Vec<Part> = parts.iter().copied().filter(|part| part[1] != 0.0).collect();
+    let told = told(parts);
     let trials = told.len() as f64;
-    let [sum, weights] = told.iter().fold([0.0; 2], |[sum, weights], [value, weight]| [sum + value, weights + weight]);
+    let [sum, weights] = told.iter().fold([0.0; 2], |[sum, weights], [value, weight]| {
+        [sum + value, weights + weight]
+    });
     let value = sum / weights;
     let quantile = StudentsT::new(0.0, 1.0, trials - 1.0).ok()?.inverse_cdf(1.0 - tail);
     let left: f64 = told.iter().map(|[part, weight]| (part - value * weight).powi(2)).sum();

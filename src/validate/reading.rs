@@ -40,7 +40,12 @@ pub fn lost_to(cause: LossCause) -> impl Fn(&TrialRecord) -> Part + Send + Sync 
 
 /// Mean time from handing a message over to its arrival, in units of `unit` seconds.
 pub fn latency(unit: f64) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
-    move |record| [record.latency.sum_nanos() as f64 * NANOS / unit, record.latency.count() as f64]
+    move |record| {
+        [
+            record.latency.sum_nanos() as f64 * NANOS / unit,
+            record.latency.count() as f64,
+        ]
+    }
 }
 
 fn robots(record: &TrialRecord) -> &[RobotAir] {
@@ -51,7 +56,9 @@ fn robots(record: &TrialRecord) -> &[RobotAir] {
 pub fn queue_wait(unit: f64) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
     move |record| {
         let wait = record.air.as_ref().map(|air| &air.queue_wait);
-        wait.map_or([0.0; 2], |wait| [wait.sum_nanos() as f64 * NANOS / unit, wait.count() as f64])
+        wait.map_or([0.0; 2], |wait| {
+            [wait.sum_nanos() as f64 * NANOS / unit, wait.count() as f64]
+        })
     }
 }
 
@@ -59,7 +66,9 @@ pub fn queue_wait(unit: f64) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
 pub fn access_delay(unit: f64) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
     move |record| {
         let wait = record.air.as_ref().map(|air| &air.access_delay);
-        wait.map_or([0.0; 2], |wait| [wait.sum_nanos() as f64 * NANOS / unit, wait.count() as f64])
+        wait.map_or([0.0; 2], |wait| {
+            [wait.sum_nanos() as f64 * NANOS / unit, wait.count() as f64]
+        })
     }
 }
 
@@ -106,7 +115,9 @@ pub fn goodput(record: &TrialRecord) -> Part {
 /// What the radio of `robot` draws for `states`, mean over time, mW.
 pub fn draws(robot: usize, states: &'static [usize]) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
     move |record| {
-        let energy = robots(record).get(robot).map_or(0.0, |air| states.iter().map(|state| air.energy[*state]).sum());
+        let energy = robots(record)
+            .get(robot)
+            .map_or(0.0, |air| states.iter().map(|state| air.energy[*state]).sum());
         [1e3 * energy, record.simulated.as_secs()]
     }
 }
@@ -128,7 +139,10 @@ pub fn power(record: &TrialRecord) -> Part {
 pub fn power_variance(mean_dbm: f64) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
     move |record| {
         let powers = powers(record);
-        [powers.iter().map(|power| (power - mean_dbm).powi(2)).sum(), powers.len() as f64]
+        [
+            powers.iter().map(|power| (power - mean_dbm).powi(2)).sum(),
+            powers.len() as f64,
+        ]
     }
 }
 
@@ -172,8 +186,14 @@ pub fn recurrence(record: &TrialRecord) -> Part {
 
 /// How long mistakes last that end in trust, s.
 pub fn mistake_duration(record: &TrialRecord) -> Part {
-    let over = record.detection.suspicions.iter().filter(|suspicion| !suspicion.cut_off);
-    let lasted: Vec<f64> = over.filter_map(|suspicion| Some(suspicion.duration?.as_secs())).collect();
+    let over = record
+        .detection
+        .suspicions
+        .iter()
+        .filter(|suspicion| !suspicion.cut_off);
+    let lasted: Vec<f64> = over
+        .filter_map(|suspicion| Some(suspicion.duration?.as_secs()))
+        .collect();
     [lasted.iter().sum(), lasted.len() as f64]
 }
 
@@ -185,10 +205,14 @@ pub fn accuracy(record: &TrialRecord) -> Part {
 
 /// How long after a failure it is suspected, s.
 pub fn detection_time(record: &TrialRecord) -> Part {
-    let times = record.detection.failures.iter().filter_map(|failure| match failure.outcome {
-        FailureOutcome::Detected(after) => Some(after.as_secs()),
-        _ => None,
-    });
+    let times = record
+        .detection
+        .failures
+        .iter()
+        .filter_map(|failure| match failure.outcome {
+            FailureOutcome::Detected(after) => Some(after.as_secs()),
+            _ => None,
+        });
     let times: Vec<f64> = times.collect();
     [times.iter().sum(), times.len() as f64]
 }
@@ -196,7 +220,10 @@ pub fn detection_time(record: &TrialRecord) -> Part {
 /// When the last robot learns the first rumour, s.
 pub fn spread_time(record: &TrialRecord) -> Part {
     let informed = record.spread.first().map_or(&[][..], |rumour| &rumour.informed);
-    let all: Option<Vec<f64>> = informed.iter().map(|at| at.map(crate::engine::SimTime::as_secs)).collect();
+    let all: Option<Vec<f64>> = informed
+        .iter()
+        .map(|at| at.map(crate::engine::SimTime::as_secs))
+        .collect();
     all.filter(|all| !all.is_empty())
         .map_or([0.0; 2], |all| [all.iter().copied().fold(0.0, f64::max), 1.0])
 }

@@ -31,8 +31,10 @@ pub struct Row {
     pub margin: Option<Margin>,
     /// How many trials its scenario has.
     pub trials: u32,
-    /// How finely the measurement resolves, relative: no interval is narrower. It is what counts where all trials give the same.
+    /// How finely records keep what is measured, relative: no interval is narrower.
     pub resolution: f64,
+    /// Whether nothing is left to chance: then every trial must give what the form does.
+    pub is_exact: bool,
     seconds: f64,
     sections: Vec<String>,
     reading: Reading,
@@ -59,6 +61,7 @@ impl Row {
             margin: None,
             trials: 20,
             resolution: RESOLUTION,
+            is_exact: false,
             seconds,
             sections,
             reading: Box::new(reading),
@@ -93,17 +96,33 @@ impl Row {
         self
     }
 
-    /// The same, measured no finer than `resolution`, relative.
+    /// The same, where nothing is left to chance, and records hold what is measured to a share of `resolution`.
     #[must_use]
-    pub(super) fn resolved(mut self, resolution: f64) -> Self {
-        self.resolution = resolution;
+    pub(super) fn exact_to(self, resolution: f64) -> Self {
+        Self {
+            resolution,
+            ..self.exact()
+        }
+    }
+
+    /// The same, where nothing is left to chance.
+    #[must_use]
+    pub(super) fn exact(mut self) -> Self {
+        self.is_exact = true;
+        self.trials = 2;
         self
     }
 
     /// Its scenario with this seed, as a file that `desim scenario` runs.
     #[must_use]
     pub fn scenario(&self, seed: u64) -> String {
-        let Self { name, form, trials, seconds, .. } = self;
+        let Self {
+            name,
+            form,
+            trials,
+            seconds,
+            ..
+        } = self;
         let folder = name.replace('.', "_");
         let mut text = format!(
             "// {name}: {form}\nScenario(\n    name: \"{folder}\",\n    trials: {trials},\n    seed: {seed},\n    time_limit: {seconds:?},\n"
@@ -115,6 +134,23 @@ impl Row {
         text
     }
 
+    /// Whether trials of another row are its own: but for its name, a trial follows from the scenario.
+    pub(super) fn runs_as(&self, other: &Self) -> bool {
+        let runs = |row: &Self| (row.trials, row.seconds.to_bits());
+        runs(self) == runs(other) && self.sections == other.sections
+    }
+
+    /// The same over another scenario.
+    #[cfg(test)]
+    pub(super) fn with_other(mut self, from: &str, to: &str) -> Self {
+        let before = self.sections.clone();
+        self.sections
+            .iter_mut()
+            .for_each(|section| *section = section.replace(from, to));
+        assert_ne!(before, self.sections, "nothing is as {from}");
+        self
+    }
+
     /// What a trial tells.
     #[must_use]
     pub fn read(&self, record: &TrialRecord) -> Part {
@@ -124,6 +160,9 @@ impl Row {
 
 impl std::fmt::Debug for Row {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Row").field("name", &self.name).field("expected", &self.expected).finish_non_exhaustive()
+        f.debug_struct("Row")
+            .field("name", &self.name)
+            .field("expected", &self.expected)
+            .finish_non_exhaustive()
     }
 }

@@ -62,13 +62,26 @@ pub enum ValidateError {
     Interrupted,
 }
 
-/// How many trials these rows take.
+/// How many trials these rows take. Rows that read the same runs share them.
 #[must_use]
 pub fn trials(rows: &[&Row]) -> u32 {
-    rows.iter().map(|row| row.trials).sum()
+    groups(rows).iter().map(|group| rows[group[0]].trials).sum()
 }
 
-/// Runs the trials of `rows`, of a catalogue of `all`, and judges each; `told` is called after each trial, with the seconds that it simulated. What comes out depends on the rows and the seed alone.
+/// The places of rows that read the same runs, together.
+fn groups(rows: &[&Row]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (place, row) in rows.iter().enumerate() {
+        match groups.iter_mut().find(|group| rows[group[0]].runs_as(row)) {
+            Some(group) => group.push(place),
+            None => groups.push(vec![place]),
+        }
+    }
+    groups
+}
+
+/// Runs the trials of `rows`, of a catalogue of `all`, and judges each; `told` is called after each trial, with the seconds that it simulated. What comes out depends
+/// on the rows and the seed alone.
 ///
 /// # Errors
 /// If a scenario is faulty, a trial fails, or somebody cancelled.
@@ -78,18 +91,21 @@ pub fn measure(
     options: &Options,
     mut told: impl FnMut(f64),
 ) -> Result<Vec<Judged>, ValidateError> {
-    let scenarios = rows.iter().map(|row| scenario(row, options.seed)).collect::<Result<Vec<_>, _>>()?;
-    let places = |(place, row): (usize, &&Row)| (0..row.trials).map(move |trial| (place, trial)).collect::<Vec<_>>();
-    let jobs: Vec<(usize, u32)> = rows.iter().enumerate().flat_map(places).collect();
+    let groups = groups(rows);
+    let first = |group: &Vec<usize>| scenario(rows[group[0]], options.seed);
+    let scenarios = groups.iter().map(first).collect::<Result<Vec<_>, _>>()?;
+    let of_group = |group: usize| (0..rows[groups[group][0]].trials).map(move |trial| (group, trial));
+    let jobs: Vec<(usize, u32)> = (0..groups.len()).flat_map(of_group).collect();
     let mut parts: Vec<Vec<Part>> = rows.iter().map(|row| vec![[0.0; 2]; row.trials as usize]).collect();
-    let run = |(place, trial): (usize, u32)| {
-        let record = run_trial(&scenarios[place], trial, DriverKind::Inline, &options.stop);
+    let run = |(group, trial): (usize, u32)| {
+        let record = run_trial(&scenarios[group], trial, DriverKind::Inline, &options.stop);
         let record = record.map_err(|source| ValidateError::Trial {
-            name: rows[place].name.clone(),
+            name: rows[groups[group][0]].name.clone(),
             trial,
             source,
         })?;
-        Ok(((place, trial), rows[place].read(&record), record.simulated.as_secs()))
+        let read: Vec<Part> = groups[group].iter().map(|&place| rows[place].read(&record)).collect();
+        Ok((group, trial, read, record.simulated.as_secs()))
     };
     let threads = options.jobs.or_else(|| thread::available_parallelism().ok());
     let ending = run_trials(
@@ -97,8 +113,10 @@ pub fn measure(
         threads.unwrap_or(NonZeroUsize::MIN),
         &options.stop,
         run,
-        |((place, trial), part, seconds)| {
-            parts[place][trial as usize] = part;
+        |(group, trial, read, seconds)| {
+            for (&place, part) in groups[group].iter().zip(read) {
+                parts[place][trial as usize] = part;
+            }
             told(seconds);
         },
     )?;
@@ -114,4 +132,57 @@ fn scenario(row: &Row, seed: u64) -> Result<Scenario, ValidateError> {
         name: row.name.clone(),
         faults: report.to_string(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::validate::{Verdict, catalogue};
+
+    fn judged(row: &Row) -> Judged {
+        measure(&[row], 60, &Options::default(), |_| ())
+            .expect("its trials run")
+            .remove(0)
+    }
+
+    fn row(name: &str) -> Row {
+        let mut all = catalogue();
+        let place = all.iter().position(|row| row.name == name).expect("a known row");
+        all.swap_remove(place)
+    }
+
+    #[test]
+    fn a_row_whose_form_is_wrong_differs() {
+        let right = row("loss.bernoulli");
+        assert_eq!(judged(&right).verdict, Verdict::Agrees);
+        let wrong = Row {
+            expected: 0.21,
+            ..right
+        };
+        assert_eq!(judged(&wrong).verdict, Verdict::Differs);
+        let wrong = Row {
+            expected: 1184.1,
+            ..row("airtime.802154.20-bytes")
+        };
+        assert_eq!(judged(&wrong).verdict, Verdict::Differs);
+    }
+
+    #[test]
+    fn a_row_whose_simulation_is_wrong_differs() {
+        let wrong = row("loss.bernoulli").with_other("Bernoulli(0.2)", "Bernoulli(0.19)");
+        assert_eq!(judged(&wrong).verdict, Verdict::Differs);
+        let wrong = row("errors.802154.20-bytes").with_other("Ieee802154()", "Ieee802154(sensitivity: -95.2)");
+        assert_eq!(judged(&wrong).verdict, Verdict::Differs);
+        let silent = row("loss.bernoulli").with_other("Traffic(", "Traffic(senders: Given([]), ");
+        let nothing = judged(&silent);
+        assert_eq!((nothing.measured, nothing.verdict), (None, Verdict::Differs));
+    }
+
+    #[test]
+    fn rows_that_read_the_same_runs_share_them_and_read_what_they_would_alone() {
+        let [rate, lasts] = ["timeout.recurrence", "timeout.duration"].map(row);
+        assert_eq!(trials(&[&rate, &lasts]), rate.trials);
+        let together = measure(&[&rate, &lasts], 60, &Options::default(), |_| ()).expect("its trials run");
+        assert_eq!(together[1], judged(&lasts));
+    }
 }

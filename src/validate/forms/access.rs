@@ -32,9 +32,8 @@ pub struct Cell {
 pub fn saturation(robots: i32, tau: f64, bits: f64, cell: &Cell) -> f64 {
     let some = 1.0 - (1.0 - tau).powi(robots);
     let one = f64::from(robots) * tau * (1.0 - tau).powi(robots - 1);
-    let time = (1.0 - some) * cell.slot
-        + one * (cell.frame + cell.acknowledged)
-        + (some - one) * (cell.frame + cell.collided);
+    let time =
+        (1.0 - some) * cell.slot + one * (cell.frame + cell.acknowledged) + (some - one) * (cell.frame + cell.collided);
     one * bits / time
 }
 
@@ -46,7 +45,9 @@ pub fn m_d_1(load: f64) -> f64 {
 /// The mean time until all of `robots` know a rumour that each passes on at a `rate` to one of the others: Σ (N − 1)/(β n (N − n)).
 pub fn epidemic(robots: u32, rate: f64) -> f64 {
     let n = f64::from(robots);
-    (1..robots).map(|knows| (n - 1.0) / (rate * f64::from(knows) * (n - f64::from(knows)))).sum()
+    (1..robots)
+        .map(|knows| (n - 1.0) / (rate * f64::from(knows) * (n - f64::from(knows))))
+        .sum()
 }
 
 #[cfg(test)]
@@ -59,7 +60,12 @@ mod tests {
         near(pure_aloha(50, 4.0 * 1.184e-3), 0.6283);
         let (tau, p) = bianchi(10, 32.0, 5, 7);
         near(p, 0.2902);
-        let cell = Cell { slot: 20.0, frame: 8480.0, acknowledged: 364.0, collided: 50.0 };
+        let cell = Cell {
+            slot: 20.0,
+            frame: 8480.0,
+            acknowledged: 364.0,
+            collided: 50.0,
+        };
         near(saturation(10, tau, 8000.0, &cell), 0.7582);
         near(epidemic(20, 1.0), 6.741);
     }

@@ -30,8 +30,18 @@ mod tests {
 
     #[test]
     fn airtimes_are_those_of_the_data_sheets() {
-        let found = [ieee802154(20), dsss(20, 1.0), dsss(1000, 11.0), ofdm(20, 6.0), lora(20, 7), lora(20, 12)];
-        for (found, known) in found.into_iter().zip([1184.0, 640.0, 946.0, 106.0, 56_576.0, 1_318_912.0]) {
+        let found = [
+            ieee802154(20),
+            dsss(20, 1.0),
+            dsss(1000, 11.0),
+            ofdm(20, 6.0),
+            lora(20, 7),
+            lora(20, 12),
+        ];
+        for (found, known) in found
+            .into_iter()
+            .zip([1184.0, 640.0, 946.0, 106.0, 56_576.0, 1_318_912.0])
+        {
             assert!((found - known).abs() < 1e-6, "{found} for {known}");
         }
     }

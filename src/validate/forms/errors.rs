@@ -69,20 +69,50 @@ struct Code {
 const HALF: Code = Code {
     free: 10,
     step: 2,
-    weights: &[36.0, 211.0, 1404.0, 11633.0, 77433.0, 502_690.0, 3_322_763.0, 21_292_910.0, 134_365_911.0],
+    weights: &[
+        36.0,
+        211.0,
+        1404.0,
+        11633.0,
+        77433.0,
+        502_690.0,
+        3_322_763.0,
+        21_292_910.0,
+        134_365_911.0,
+    ],
     bits: 1.0,
 };
 const TWO_THIRDS: Code = Code {
     free: 6,
     step: 1,
-    weights: &[3.0, 70.0, 285.0, 1276.0, 6160.0, 27128.0, 117_019.0, 498_860.0, 2_103_891.0, 8_784_123.0],
+    weights: &[
+        3.0,
+        70.0,
+        285.0,
+        1276.0,
+        6160.0,
+        27128.0,
+        117_019.0,
+        498_860.0,
+        2_103_891.0,
+        8_784_123.0,
+    ],
     bits: 2.0,
 };
 const THREE_QUARTERS: Code = Code {
     free: 5,
     step: 1,
     weights: &[
-        42.0, 201.0, 1492.0, 10469.0, 62935.0, 379_644.0, 2_253_373.0, 13_073_811.0, 75_152_755.0, 428_005_675.0,
+        42.0,
+        201.0,
+        1492.0,
+        10469.0,
+        62935.0,
+        379_644.0,
+        2_253_373.0,
+        13_073_811.0,
+        75_152_755.0,
+        428_005_675.0,
     ],
     bits: 3.0,
 };
@@ -91,7 +121,10 @@ const THREE_QUARTERS: Code = Code {
 fn coded(code: &Code, p: f64) -> f64 {
     let bhattacharyya = (4.0 * p * (1.0 - p)).sqrt();
     let powers = (0..).map(|place| code.free + code.step * place);
-    let sum: f64 = powers.zip(code.weights).map(|(power, weight)| weight * bhattacharyya.powi(power)).sum();
+    let sum: f64 = powers
+        .zip(code.weights)
+        .map(|(power, weight)| weight * bhattacharyya.powi(power))
+        .sum();
     (sum / (2.0 * code.bits)).min(0.5)
 }
 
@@ -135,10 +168,24 @@ mod tests {
         near(o_qpsk(1.0), 1.615e-4, 1e-3);
         near(needed_db(o_qpsk, 208, 0.01), 0.509, 1e-3);
         let at_1024 = |bit_error: fn(f64) -> f64| needed_db(bit_error, 8192, 0.08);
-        for (found, known) in [(at_1024(dsss1), -3.09), (at_1024(dsss2), 1.55), (at_1024(cck5), 4.08), (at_1024(cck11), 7.09)] {
+        for (found, known) in [
+            (at_1024(dsss1), -3.09),
+            (at_1024(dsss2), 1.55),
+            (at_1024(cck5), 4.08),
+            (at_1024(cck11), 7.09),
+        ] {
             assert!((found - known).abs() < 0.006, "{found} for {known}");
         }
-        for (rate, known) in [(6, 3.85), (9, 6.73), (12, 6.86), (18, 9.74), (24, 13.38), (36, 16.48), (48, 21.23), (54, 22.49)] {
+        for (rate, known) in [
+            (6, 3.85),
+            (9, 6.73),
+            (12, 6.86),
+            (18, 9.74),
+            (24, 13.38),
+            (36, 16.48),
+            (48, 21.23),
+            (54, 22.49),
+        ] {
             let found = needed_db(|s| ofdm(rate, s), 8000, 0.1);
             assert!((found - known).abs() < 0.006, "{rate} Mb/s: {found} for {known}");
         }

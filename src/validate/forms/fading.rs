@@ -54,7 +54,8 @@ impl Law {
 
 /// The share of frames lost where each has an exponential gain of its own: ∫ loss(mean · g) e^(−g) dg.
 pub fn block_rayleigh(mean: f64, loss: impl Fn(f64) -> f64) -> f64 {
-    integral(0.0, 1.0, 4000, |g| loss(mean * g) * (-g).exp()) + integral(1.0, 40.0, 20_000, |g| loss(mean * g) * (-g).exp())
+    integral(0.0, 1.0, 4000, |g| loss(mean * g) * (-g).exp())
+        + integral(1.0, 40.0, 20_000, |g| loss(mean * g) * (-g).exp())
 }
 
 /// 20 log₁₀(4πd/λ): free space, dB, at `frequency` Hz.

@@ -14,7 +14,9 @@ pub fn integral(low: f64, high: f64, steps: u32, f: impl Fn(f64) -> f64) -> f64 
         _ if place % 2 == 1 => 4.0,
         _ => 2.0,
     };
-    let sum: f64 = (0..=steps).map(|place| weight(place) * f(low + step * f64::from(place))).sum();
+    let sum: f64 = (0..=steps)
+        .map(|place| weight(place) * f(low + step * f64::from(place)))
+        .sum();
     sum * step / 3.0
 }
 
@@ -34,7 +36,9 @@ pub fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 /// Bessel's J0 by its integral, ∫ cos(x sin t) dt/π from 0 to π, of which the trapezoidal rule is exact as soon as its steps are more than x.
 pub fn j0(x: f64) -> f64 {
     let steps = 64 + 4 * x.abs() as u32;
-    let sum: f64 = (0..steps).map(|step| (x * (PI * (f64::from(step) + 0.5) / f64::from(steps)).sin()).cos()).sum();
+    let sum: f64 = (0..steps)
+        .map(|step| (x * (PI * (f64::from(step) + 0.5) / f64::from(steps)).sin()).cos())
+        .sum();
     sum / f64::from(steps)
 }
 
@@ -67,7 +71,11 @@ pub fn marcum_below(a: f64, b: f64) -> f64 {
         let n = f64::from(n);
         (n * half.ln() - half - ln_gamma(n + 1.0)).exp() * gamma_lr(n + 1.0, b * b / 2.0)
     };
-    if half == 0.0 { gamma_lr(1.0, b * b / 2.0) } else { (0..400).map(term).sum() }
+    if half == 0.0 {
+        gamma_lr(1.0, b * b / 2.0)
+    } else {
+        (0..400).map(term).sum()
+    }
 }
 
 /// The standard normal distribution function.

@@ -43,10 +43,21 @@ fn unicast() -> Vec<Row> {
                 .within(0.03, "all slots in step, nobody waits out a timeout"),
         );
         rows.push(
-            Row::new("DCF", format!("dcf.collisions.{robots}-robots"), (p, ""), setting(), reading::failed_attempts)
-                .trials(8)
-                .form(format!("the same: share of attempts that collide, p = 1 − (1 − τ)^(n − 1), n = {robots} (Bianchi, 2000)"))
-                .within(0.12, "who collided waits out a timeout while others count on: p is 0 to 12 % lower, in ns-3 too"),
+            Row::new(
+                "DCF",
+                format!("dcf.collisions.{robots}-robots"),
+                (p, ""),
+                setting(),
+                reading::failed_attempts,
+            )
+            .trials(8)
+            .form(format!(
+                "the same: share of attempts that collide, p = 1 − (1 − τ)^(n − 1), n = {robots} (Bianchi, 2000)"
+            ))
+            .within(
+                0.12,
+                "who collided waits out a timeout while others count on: p is 0 to 12 % lower, in ns-3 too",
+            ),
         );
     }
     rows
@@ -83,11 +94,23 @@ fn csma_ca() -> Vec<Row> {
     };
     let source = "an independent program of the standard's text, mean of its runs";
     let why = "half of the 95 % interval of that program";
-    let row = |name: &str, robots: u32, (expected, half, unit): (f64, f64, &'static str), what: &str, reading: fn(&TrialRecord) -> Part| {
-        Row::new(MODEL, format!("csma-ca.{name}.{robots}-robots"), (expected, unit), setting(robots), reading)
-            .trials(if robots > 20 { 12 } else { 20 })
-            .form(format!("{what}, {robots} robots that broadcast 20 bytes at 10 /s: {source}"))
-            .give_or_take(half, why)
+    let row = |name: &str,
+               robots: u32,
+               (expected, half, unit): (f64, f64, &'static str),
+               what: &str,
+               reading: fn(&TrialRecord) -> Part| {
+        Row::new(
+            MODEL,
+            format!("csma-ca.{name}.{robots}-robots"),
+            (expected, unit),
+            setting(robots),
+            reading,
+        )
+        .trials(if robots > 20 { 12 } else { 20 })
+        .form(format!(
+            "{what}, {robots} robots that broadcast 20 bytes at 10 /s: {source}"
+        ))
+        .give_or_take(half, why)
     };
     let delay: fn(&TrialRecord) -> Part = |record| reading::access_delay(1e-3)(record);
     let failures: fn(&TrialRecord) -> Part = |record| reading::lost_to(LossCause::AccessFailure)(record);
@@ -97,9 +120,21 @@ fn csma_ca() -> Vec<Row> {
         row("broadcast", 50, (0.6782, 0.0038, ""), delivered, reading::delivered),
         row("delay", 20, (2.5568, 0.0351, "ms"), "mean access delay", delay),
         row("delay", 50, (4.8892, 0.0485, "ms"), "mean access delay", delay),
-        row("failures", 50, (0.0340, 0.0011, ""), "share that finds no clear channel", failures),
-        Row::new(MODEL, "csma-ca.hidden.50-hz", (0.880_35, ""), hidden_pair(60.0, 50.0, "queue: 16"), reading::delivered)
-            .form("a hidden pair with carrier sense, 50 /s: ns-3.37 where overlaps in its traces are lost")
-            .give_or_take(0.0022, "half of the 95 % interval of its runs"),
+        row(
+            "failures",
+            50,
+            (0.0340, 0.0011, ""),
+            "share that finds no clear channel",
+            failures,
+        ),
+        Row::new(
+            MODEL,
+            "csma-ca.hidden.50-hz",
+            (0.880_35, ""),
+            hidden_pair(60.0, 50.0, "queue: 16"),
+            reading::delivered,
+        )
+        .form("a hidden pair with carrier sense, 50 /s: ns-3.37 where overlaps in its traces are lost")
+        .give_or_take(0.0022, "half of the 95 % interval of its runs"),
     ]
 }

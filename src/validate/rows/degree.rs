@@ -17,14 +17,24 @@ pub fn rows() -> Vec<Row> {
     let b = 4.0 * 10_f64.ln() / 30.0;
     vec![
         border(),
-        factor("shadowing", 3.0, "shadowing: (sigma: 4.0, decorrelation: 2.0)", (2.0 * b * b).exp())
-            .form("mean degree over that by path loss alone: e^(2(σ ln 10/10n)²), σ = 4 dB, n = 3"),
+        factor(
+            "shadowing",
+            3.0,
+            "shadowing: (sigma: 4.0, decorrelation: 2.0)",
+            (2.0 * b * b).exp(),
+        )
+        .form("mean degree over that by path loss alone: e^(2(σ ln 10/10n)²), σ = 4 dB, n = 3"),
         factor("rayleigh", 2.0, "fading: Rayleigh()", Law::Rayleigh.degree(3.0))
             .form("mean degree over that by path loss alone: Γ(1 + 2/n), n = 3"),
         factor("rician-4", 2.0, "fading: Rician(k: 4.0)", Law::Rician(4.0).degree(3.0))
             .form("mean degree over that by path loss alone: Γ(1 + 2/n)(1 + K)^(−2/n) ₁F₁(−2/n; 1; −K), K = 4, n = 3"),
-        factor("nakagami-3", 2.0, "fading: Nakagami(m: 3.0)", Law::Nakagami(3.0).degree(3.0))
-            .form("mean degree over that by path loss alone: Γ(m + 2/n)/(Γ(m) m^(2/n)), m = 3, n = 3"),
+        factor(
+            "nakagami-3",
+            2.0,
+            "fading: Nakagami(m: 3.0)",
+            Law::Nakagami(3.0).degree(3.0),
+        )
+        .form("mean degree over that by path loss alone: Γ(m + 2/n)/(Γ(m) m^(2/n)), m = 3, n = 3"),
     ]
 }
 
@@ -42,7 +52,7 @@ fn border() -> Row {
     ];
     let setting = (0.1, sections.map(str::to_owned).to_vec());
     Row::new(MODEL, "degree.square", (expected, ""), setting, reading::neighbours)
-        .trials(400)
+        .trials(3000)
         .form("(N − 1)(πx² − 8x³/3 + x⁴/2) in a square of side L, x = R/L = 0.2, N = 100: a disc less what is beyond the border")
 }
 
@@ -50,16 +60,16 @@ fn border() -> Row {
 fn factor(name: &str, radius: f64, radio: &str, expected: f64) -> Row {
     let disc = radius * range();
     let place = format!(
-        "arena: (size: ({size:?}, {size:?})),\n    motion: (body_radius: 0.001, max_speed: 0.001),\n    swarm: (robots: 200, deploy: Cluster(radius: {disc:?}))",
+        "arena: (size: ({size:?}, {size:?})),\n    motion: (body_radius: 0.001, max_speed: 0.001),\n    swarm: (robots: 400, deploy: Cluster(radius: {disc:?}))",
         size = 2.0 * disc + 10.0
     );
     let radio = format!(
-        "technology: Custom(bit_rate: None, sensitivity: -80.0), path_loss: LogDistance(exponent: 3.0, reference_loss: 40.0), access: None, negligible: 60.0, {radio}"
+        "technology: Custom(bit_rate: None, sensitivity: -80.0), path_loss: LogDistance(exponent: 3.0, reference_loss: 40.0), access: Some(None), negligible: 60.0, {radio}"
     );
     let setting = traffic(1.0, &place, "to: Robot(0), when: Periodic(1.0), payload: 20", &radio);
     let heard = move |record: &TrialRecord| -> Part {
         let [delivered, all] = reading::delivered(record);
         [delivered * radius * radius, all]
     };
-    Row::new(MODEL, format!("degree.{name}"), (expected, ""), setting, heard).trials(400)
+    Row::new(MODEL, format!("degree.{name}"), (expected, ""), setting, heard).trials(240)
 }

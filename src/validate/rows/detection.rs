@@ -32,19 +32,37 @@ pub fn rows() -> Vec<Row> {
     let (to_bad, to_good) = (0.05_f64, 0.2_f64);
     let gilbert = (to_bad + to_good) / (to_good * to_bad * (1.0 - to_good).powi(2));
     let ends = "a pair is watched from a first status to the end of the run, and not for ever";
-    let row = |name: &str, expected: (f64, &'static str), setting: Setting, reading: fn(&crate::metrics::TrialRecord) -> [f64; 2]| {
+    let row = |name: &str,
+               expected: (f64, &'static str),
+               setting: Setting,
+               reading: fn(&crate::metrics::TrialRecord) -> [f64; 2]| {
         Row::new(MODEL, name, expected, setting, reading).trials(12)
     };
     vec![
-        row("timeout.recurrence", (recurrence, "s"), bernoulli(), reading::recurrence)
-            .form("from mistake to mistake: η/((1 − p) p^m), m = ⌊TO/η⌋, η = 1 s, TO = 2.5 s, p = 0.2")
-            .within(0.004, ends),
-        row("timeout.duration", (duration, "s"), bernoulli(), reading::mistake_duration)
-            .form("mean mistake: (m + 1/(1 − p))η − TO, TO = 2.5 s, p = 0.2")
-            .within(0.002, ends),
-        row("timeout.accuracy", (1.0 - duration / recurrence, ""), bernoulli(), reading::accuracy)
-            .form("share of the time without mistake: 1 − E(T_M)/E(T_MR)")
-            .within(0.0002, ends),
+        row(
+            "timeout.recurrence",
+            (recurrence, "s"),
+            bernoulli(),
+            reading::recurrence,
+        )
+        .form("from mistake to mistake: η/((1 − p) p^m), m = ⌊TO/η⌋, η = 1 s, TO = 2.5 s, p = 0.2")
+        .within(0.004, ends),
+        row(
+            "timeout.duration",
+            (duration, "s"),
+            bernoulli(),
+            reading::mistake_duration,
+        )
+        .form("mean mistake: (m + 1/(1 − p))η − TO, TO = 2.5 s, p = 0.2")
+        .within(0.002, ends),
+        row(
+            "timeout.accuracy",
+            (1.0 - duration / recurrence, ""),
+            bernoulli(),
+            reading::accuracy,
+        )
+        .form("share of the time without mistake: 1 − E(T_M)/E(T_MR)")
+        .within(0.0002, ends),
         row(
             "timeout.recurrence.bursts",
             (gilbert, "s"),
@@ -68,8 +86,17 @@ fn detection_time() -> Row {
     };
     let expected = (0..40).map(after).sum::<f64>() + LATENCY;
     let faults = "faults: [Mute(robots: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9], at: 30.0)]";
-    Row::new(MODEL, "timeout.detection", (expected, "s"), setting(45.0, timeout, "Bernoulli(0.2)", &[faults]), reading::detection_time)
-        .trials(200)
-        .form("from a failure to its detection: Σ (1 − p) p^k ∫ max(0, TO − u − kη) du + d, TO = 3.5 s, p = 0.2")
-        .within(0.001, "who is suspected already and wrongly when a robot fails counts as detected at once, latency and all")
+    Row::new(
+        MODEL,
+        "timeout.detection",
+        (expected, "s"),
+        setting(45.0, timeout, "Bernoulli(0.2)", &[faults]),
+        reading::detection_time,
+    )
+    .trials(200)
+    .form("from a failure to its detection: Σ (1 − p) p^k ∫ max(0, TO − u − kη) du + d, TO = 3.5 s, p = 0.2")
+    .within(
+        0.001,
+        "who is suspected already and wrongly when a robot fails counts as detected at once, latency and all",
+    )
 }

@@ -25,7 +25,7 @@ pub fn rows() -> Vec<Row> {
             traffic(10.0, &pair(1.0), "senders: Given([])", &cc2420),
             reading::draws(1, &[SEND, RECEIVE, LISTEN, TURN]),
         )
-        .trials(2)
+        .exact()
         .form("V · I: a CC2420 that hears nothing, 18.8 mA at 3.3 V (data sheet)"),
         Row::new(
             MODEL,

@@ -72,7 +72,7 @@ fn traffic(seconds: f64, place: &str, traffic: &str, radio: &str) -> Setting {
 /// Robot 0 sends to robot 1, `metres` away, without a medium between them.
 fn link(seconds: f64, metres: f64, when: &str, payload: u32, radio: &str) -> Setting {
     let load = format!("senders: Given([0]), to: Next, when: {when}, payload: {payload}");
-    traffic(seconds, &pair(metres), &load, &format!("{radio}, access: None"))
+    traffic(seconds, &pair(metres), &load, &format!("{radio}, access: Some(None)"))
 }
 
 #[cfg(test)]
@@ -80,7 +80,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::scenario::{examine, to_ron, parse};
+    use crate::scenario::{examine, parse, to_ron};
 
     #[test]
     fn there_are_many_rows_each_with_a_name_of_its_own_a_form_and_trials_to_tell() {
@@ -89,8 +89,16 @@ mod tests {
         let names: BTreeSet<&str> = rows.iter().map(|row| row.name.as_str()).collect();
         assert_eq!(names.len(), rows.len());
         for row in &rows {
-            assert!(!row.form.is_empty() && row.trials >= 2 && row.expected.is_finite(), "{row:?}");
-            assert!(row.margin.as_ref().is_none_or(|margin| margin.size > 0.0 && !margin.why.is_empty()), "{row:?}");
+            assert!(
+                !row.form.is_empty() && row.trials >= 2 && row.expected.is_finite(),
+                "{row:?}"
+            );
+            assert!(
+                row.margin
+                    .as_ref()
+                    .is_none_or(|margin| margin.size > 0.0 && !margin.why.is_empty()),
+                "{row:?}"
+            );
         }
     }
 

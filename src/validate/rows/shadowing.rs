@@ -14,7 +14,12 @@ pub fn couples(couples: &[[(f64, f64); 2]], copies: u32, apart: f64, radio: &str
     let mut places = Vec::new();
     for copy in 0..copies {
         let shift = apart * (f64::from(copy) - f64::from(copies - 1) / 2.0);
-        places.extend(couples.iter().flatten().map(|(x, y)| format!("({:?}, {y:?})", x + shift)));
+        places.extend(
+            couples
+                .iter()
+                .flatten()
+                .map(|(x, y)| format!("({:?}, {y:?})", x + shift)),
+        );
     }
     let senders: Vec<String> = (0..places.len()).step_by(2).map(|robot| robot.to_string()).collect();
     let place = format!(
@@ -23,8 +28,14 @@ pub fn couples(couples: &[[(f64, f64); 2]], copies: u32, apart: f64, radio: &str
         places.len(),
         places.join(", ")
     );
-    let load = format!("senders: Given([{}]), to: Next, when: Periodic(0.1), payload: 20", senders.join(", "));
-    let radio = format!("technology: Custom(bit_rate: None, sensitivity: -300.0), {}, access: None, {radio}", super::EQUAL_LOSS);
+    let load = format!(
+        "senders: Given([{}]), to: Next, when: Periodic(0.1), payload: 20",
+        senders.join(", ")
+    );
+    let radio = format!(
+        "technology: Custom(bit_rate: None, sensitivity: -300.0), {}, access: Some(None), {radio}",
+        super::EQUAL_LOSS
+    );
     traffic(0.1, &place, &load, &radio)
 }
 
@@ -42,18 +53,30 @@ pub fn rows() -> Vec<Row> {
     let variance = |name: &str, metres: f64| {
         let couple = [[(0.0, 0.0), (metres, 0.0)]];
         let expected = SIGMA_DB * SIGMA_DB;
-        Row::new(MODEL, name, (expected, "dB²"), setting(&couple), reading::power_variance(-50.0))
-            .trials(400)
-            .form("variance σ², however near the ends are to each other (Gudmundson, 1991)")
+        Row::new(
+            MODEL,
+            name,
+            (expected, "dB²"),
+            setting(&couple),
+            reading::power_variance(-50.0),
+        )
+        .trials(3000)
+        .form("variance σ², however near the ends are to each other (Gudmundson, 1991)")
     };
     let correlation = |name: &str, [first, second]: [f64; 2]| {
         // One end goes along, the other across.
         let here = [(0.0, 0.0), (8.0, 0.0)];
         let there = [(first, 0.0), (8.0, second)];
         let expected = (-(first + second) / DECORRELATION_M).exp();
-        Row::new(MODEL, name, (expected, ""), setting(&[here, there]), reading::products(beyond))
-            .trials(400)
-            .form("correlation e^(−(Δ₁ + Δ₂)/d) where the ends of a link go Δ₁ and Δ₂ (Gudmundson, 1991)")
+        Row::new(
+            MODEL,
+            name,
+            (expected, ""),
+            setting(&[here, there]),
+            reading::products(beyond),
+        )
+        .trials(3000)
+        .form("correlation e^(−(Δ₁ + Δ₂)/d) where the ends of a link go Δ₁ and Δ₂ (Gudmundson, 1991)")
     };
     vec![
         variance("shadowing.variance.0.5m", 0.5),
