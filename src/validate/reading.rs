@@ -72,6 +72,14 @@ pub fn access_delay(unit: f64) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
     }
 }
 
+/// Mean time from handing a frame over until it is first on air, in units of `unit` seconds.
+pub fn delay(unit: f64) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
+    move |record| {
+        let [waits, frames] = queue_wait(unit)(record);
+        [waits + access_delay(unit)(record)[0], frames]
+    }
+}
+
 /// Mean time that robots send for a frame, in units of `unit` seconds.
 pub fn time_on_air(unit: f64) -> impl Fn(&TrialRecord) -> Part + Send + Sync {
     move |record| {

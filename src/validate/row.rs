@@ -1,5 +1,7 @@
 //! An oracle: a form, and the scenario by which it is measured.
 
+use std::fmt::Write as _;
+
 use crate::metrics::TrialRecord;
 use crate::statistics::Part;
 
@@ -128,7 +130,8 @@ impl Row {
             "// {name}: {form}\nScenario(\n    name: \"{folder}\",\n    trials: {trials},\n    seed: {seed},\n    time_limit: {seconds:?},\n"
         );
         for section in &self.sections {
-            text.push_str(&format!("    {section},\n"));
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "    {section},");
         }
         text.push_str(")\n");
         text

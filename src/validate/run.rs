@@ -153,18 +153,12 @@ mod tests {
 
     #[test]
     fn a_row_whose_form_is_wrong_differs() {
-        let right = row("loss.bernoulli");
-        assert_eq!(judged(&right).verdict, Verdict::Agrees);
-        let wrong = Row {
-            expected: 0.21,
-            ..right
-        };
-        assert_eq!(judged(&wrong).verdict, Verdict::Differs);
-        let wrong = Row {
-            expected: 1184.1,
-            ..row("airtime.802154.20-bytes")
-        };
-        assert_eq!(judged(&wrong).verdict, Verdict::Differs);
+        for (name, wrong) in [("loss.bernoulli", 0.21), ("airtime.802154.20-bytes", 1184.1)] {
+            let mut row = row(name);
+            assert_eq!(judged(&row).verdict, Verdict::Agrees, "{name}");
+            row.expected = wrong;
+            assert_eq!(judged(&row).verdict, Verdict::Differs, "{name}");
+        }
     }
 
     #[test]

@@ -9,8 +9,7 @@ use statrs::function::gamma::{gamma_lr, ln_gamma};
 pub fn integral(low: f64, high: f64, steps: u32, f: impl Fn(f64) -> f64) -> f64 {
     let step = (high - low) / f64::from(steps);
     let weight = |place: u32| match place {
-        0 => 1.0,
-        _ if place == steps => 1.0,
+        _ if place == 0 || place == steps => 1.0,
         _ if place % 2 == 1 => 4.0,
         _ => 2.0,
     };

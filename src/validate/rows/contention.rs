@@ -112,14 +112,26 @@ fn csma_ca() -> Vec<Row> {
         ))
         .give_or_take(half, why)
     };
-    let delay: fn(&TrialRecord) -> Part = |record| reading::access_delay(1e-3)(record);
+    let delay: fn(&TrialRecord) -> Part = |record| reading::delay(1e-3)(record);
     let failures: fn(&TrialRecord) -> Part = |record| reading::lost_to(LossCause::AccessFailure)(record);
     let delivered = "copies delivered where overlaps are lost";
     vec![
         row("broadcast", 20, (0.9077, 0.0038, ""), delivered, reading::delivered),
         row("broadcast", 50, (0.6782, 0.0038, ""), delivered, reading::delivered),
-        row("delay", 20, (2.5568, 0.0351, "ms"), "mean access delay", delay),
-        row("delay", 50, (4.8892, 0.0485, "ms"), "mean access delay", delay),
+        row(
+            "delay",
+            20,
+            (2.5568, 0.0351, "ms"),
+            "mean time from a message to its frame on air",
+            delay,
+        ),
+        row(
+            "delay",
+            50,
+            (4.8892, 0.0485, "ms"),
+            "mean time from a message to its frame on air",
+            delay,
+        ),
         row(
             "failures",
             50,

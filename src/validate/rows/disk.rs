@@ -1,5 +1,7 @@
 //! The disk radio: loss and latency; graphs; rumours.
 
+use std::f64::consts::PI;
+
 use super::{Row, Setting};
 use crate::validate::forms::access::epidemic;
 use crate::validate::forms::special::normal;
@@ -118,7 +120,7 @@ fn latencies() -> Vec<Row> {
             "what is still under way at the end is not counted, and takes longest",
         )
     };
-    let density = (-0.5_f64).exp() / (2.0 * std::f64::consts::PI).sqrt();
+    let density = (-0.5_f64).exp() / (2.0 * PI).sqrt();
     vec![
         row(
             "uniform",
@@ -168,7 +170,6 @@ fn graphs() -> Vec<Row> {
         .exact()
         .form(format!("λ₂ = {form} (Fiedler, 1973)"))
     };
-    use std::f64::consts::PI;
     let path = (0..10).map(|place| (1.5 * f64::from(place) - 6.75, 0.0)).collect();
     let round = |count: i32, radius: f64| {
         let angle = move |place: i32| 2.0 * PI * f64::from(place) / f64::from(count);
