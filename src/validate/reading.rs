@@ -175,10 +175,13 @@ pub fn lambda2(record: &TrialRecord) -> Part {
     [seen.iter().sum(), seen.len() as f64]
 }
 
-/// Suspicions that begin in a second and pair.
-pub fn suspicion_rate(record: &TrialRecord) -> Part {
+/// How often a second and pair statuses begin to be missed: suspicions in all of the time, in range or not.
+pub fn onset_rate(record: &TrialRecord) -> Part {
     let seen = &record.detection;
-    [seen.suspicions.len() as f64, seen.monitored_s]
+    [
+        seen.suspicions.len() as f64,
+        record.simulated.as_secs() * seen.pairs as f64,
+    ]
 }
 
 /// Statuses lost for each suspicion, each worth `unit`.
@@ -188,8 +191,7 @@ pub fn losses_a_suspicion(unit: f64) -> impl Fn(&TrialRecord) -> Part + Send + S
 
 /// Monitored time for each suspicion, s.
 pub fn recurrence(record: &TrialRecord) -> Part {
-    let [suspicions, monitored] = suspicion_rate(record);
-    [monitored, suspicions]
+    [record.detection.monitored_s, record.detection.suspicions.len() as f64]
 }
 
 /// How long mistakes last that end in trust, s.

@@ -53,6 +53,7 @@ fn border() -> Row {
     let setting = (0.1, sections.map(str::to_owned).to_vec());
     Row::new(MODEL, "degree.square", (expected, ""), setting, reading::neighbours)
         .trials(3000)
+        .within(0.0005, "robots have bodies, of 1 mm")
         .form("(N − 1)(πx² − 8x³/3 + x⁴/2) in a square of side L, x = R/L = 0.2, N = 100: a disc less what is beyond the border")
 }
 

@@ -91,7 +91,7 @@ fn outage(name: &str, of: Law, x: f64, form: &str) -> Row {
 
 /// Statuses every half millisecond, of which a detector says when they begin to fail.
 fn followed(of: Law, rho: f64) -> Setting {
-    let seconds = 20.0;
+    let seconds = 4.0;
     let radio = format!(
         "{}, access: Some(None), fading: {}",
         hears(db(rho * rho)),
@@ -120,11 +120,12 @@ fn crossings(name: &str, of: Law, rho: f64, form: &str) -> [Row; 2] {
             format!("fading.crossings.{name}"),
             (rate, "/s"),
             followed(of, rho),
-            reading::suspicion_rate,
+            reading::onset_rate,
         )
         .form(format!(
             "falls through ρ of the root mean square a second: {form} (Rice, 1948)"
         ))
+        .trials(120)
         .within(0.025, why),
         Row::new(
             MODEL,
@@ -134,6 +135,7 @@ fn crossings(name: &str, of: Law, rho: f64, form: &str) -> [Row; 2] {
             reading::losses_a_suspicion(1e3 * STEP_S),
         )
         .form(format!("mean fade, P(gain < ρ²) over the rate of crossings: {form}"))
+        .trials(120)
         .within(0.025, why),
     ]
 }
