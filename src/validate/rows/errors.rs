@@ -50,6 +50,11 @@ pub fn rows() -> Vec<Row> {
     }
     rows.extend(wifi_b());
     rows.extend(wifi_g());
+    // Over noise that is given: what it is does not follow from a sensitivity, and the form shows whole.
+    let expected = frame(o_qpsk(ratio(-1.438)), 8 * 37);
+    let custom = "Custom(header_bytes: 17, noise: Some(-100.0), modulation: OQpsk)";
+    let row_of_noise = row("errors.o-qpsk".to_owned(), custom, -100.0, -1.438, 20, expected);
+    rows.push(row_of_noise.form("the same form, 37 bytes at −1.438 dB over a given noise"));
     let expected = frame(gfsk(ratio(9.0)), 8 * 31);
     let custom = "Custom(bit_rate: Some(1e6), noise: Some(-100.0), modulation: Gfsk)";
     rows.push(

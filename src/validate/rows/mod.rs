@@ -17,7 +17,7 @@ use super::row::Row;
 /// All oracles, in the order in which they are shown.
 #[must_use]
 pub fn catalogue() -> Vec<Row> {
-    [
+    let groups = [
         path_loss::rows(),
         shadowing::rows(),
         fading::rows(),
@@ -29,10 +29,17 @@ pub fn catalogue() -> Vec<Row> {
         energy::rows(),
         disk::rows(),
         detection::rows(),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    ];
+    let mut rows: Vec<Row> = groups.into_iter().flatten().collect();
+    // Those of one model together, models as they first come.
+    let mut models: Vec<&str> = Vec::new();
+    for row in &rows {
+        if !models.contains(&row.model) {
+            models.push(row.model);
+        }
+    }
+    rows.sort_by_key(|row| models.iter().position(|model| *model == row.model));
+    rows
 }
 
 /// How long trials last, seconds, and the sections of their scenario.
