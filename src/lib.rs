@@ -264,3 +264,4 @@ pub mod spool;
 pub mod statistics;
 pub mod testing;
 pub mod text;
+pub mod validate;

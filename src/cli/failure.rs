@@ -22,6 +22,8 @@ pub enum Failure {
     Drawn(String),
     /// The input is wrong, and the command has said how.
     Shown,
+    /// What was validated differs, and the command has said where.
+    Differs,
     /// Something else went wrong.
     Other(String),
     /// The user interrupted it; the message says what is kept.
@@ -34,7 +36,7 @@ impl Failure {
     pub fn status(&self) -> u8 {
         match self {
             Self::Input(_) | Self::Drawn(_) | Self::Shown => FAULTY_INPUT,
-            Self::Other(_) => 1,
+            Self::Differs | Self::Other(_) => 1,
             Self::Interrupted(_) => INTERRUPTED,
         }
     }

@@ -25,6 +25,7 @@ pub mod scenario;
 pub mod schema;
 pub mod shown;
 mod told;
+pub mod validate;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -42,6 +43,7 @@ use new::NewArguments;
 use report::ReportArguments;
 use scenario::ScenarioArguments;
 use shown::Format;
+use validate::ValidateArguments;
 
 use crate::text::clean_lines;
 
@@ -126,6 +128,9 @@ pub enum Command {
     /// Tell in words and times why a robot was suspected in a finished trial
     #[command(long_about = explain::LONG_ABOUT)]
     Explain(ExplainArguments),
+    /// Hold every model against its closed form on this machine
+    #[command(long_about = validate::LONG_ABOUT)]
+    Validate(ValidateArguments),
     /// Write a scenario to begin with, or a crate with a protocol of your own
     #[command(long_about = new::LONG_ABOUT)]
     New(NewArguments),
@@ -194,6 +199,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
         }
         Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Validate(arguments) => validate::run(&arguments),
         Command::New(arguments) => new::run(&arguments, &mut out),
         Command::Schema { study } => Ok(schema::schema(study, &mut out)?),
     }
@@ -208,7 +214,7 @@ pub fn exit(result: Result<(), Failure>) -> ExitCode {
             let _ = output::stderr().write_all(faults.as_bytes());
         }
         Failure::Input(words) | Failure::Other(words) | Failure::Interrupted(words) => output::say(words),
-        Failure::Shown => {}
+        Failure::Shown | Failure::Differs => {}
     }
     failure.status().into()
 }

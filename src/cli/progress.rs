@@ -43,7 +43,12 @@ impl Progress {
 
     /// Counts a trial.
     pub fn count(&mut self, part: &FinishedTrial) {
-        self.simulated_s += part.record.simulated.as_secs();
+        self.count_lasting(part.record.simulated.as_secs());
+    }
+
+    /// Counts a trial of so many simulated seconds.
+    pub fn count_lasting(&mut self, seconds: f64) {
+        self.simulated_s += seconds;
         let rate = self.simulated_s / self.start.elapsed().as_secs_f64();
         self.bar.set_message(format!("{rate:.0}"));
         self.bar.set_style(layout(LATER));

@@ -113,7 +113,7 @@ impl Pool<'_> {
 
 /// Runs `trials` on `jobs` threads and hands what each leaves to `finished`, on the calling thread, in the order in
 /// which they finish. The first error cancels `stop`; errors after a cancellation are those of dropped trials.
-fn run_trials<J: Copy + Sync, T: Send, E: Send>(
+pub fn run_trials<J: Copy + Sync, T: Send, E: Send>(
     trials: &[J],
     jobs: NonZeroUsize,
     stop: &CancellationToken,

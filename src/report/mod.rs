@@ -15,6 +15,7 @@ mod preflight;
 mod spread;
 mod surprises;
 mod terminal;
+mod validation;
 
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
@@ -24,3 +25,4 @@ pub use layout::message;
 pub use missed::Asked;
 pub use preflight::preflight;
 pub use terminal::{Input, Speed, terminal};
+pub use validation::validation;

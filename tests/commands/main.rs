@@ -8,3 +8,4 @@ mod harm;
 mod results_folder;
 mod runs;
 mod studies;
+mod validate;
