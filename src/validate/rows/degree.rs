@@ -61,7 +61,7 @@ fn border() -> Row {
 fn factor(name: &str, radius: f64, radio: &str, expected: f64) -> Row {
     let disc = radius * range();
     let place = format!(
-        "arena: (size: ({size:?}, {size:?})),\n    motion: (body_radius: 0.001, max_speed: 0.001),\n    swarm: (robots: 400, deploy: Cluster(radius: {disc:?}))",
+        "arena: (size: ({size:?}, {size:?})),\n    motion: (body_radius: 0.001, max_speed: 0.001),\n    swarm: (robots: 200, deploy: Cluster(radius: {disc:?}))",
         size = 2.0 * disc + 10.0
     );
     let radio = format!(

@@ -70,10 +70,13 @@ fn noise_802154() -> f64 {
     -95.0 - needed_db(o_qpsk, 8 * 26, 0.01)
 }
 
+/// A rate in Mb/s and as scenarios have it, its bit errors, their form, and a ratio in dB.
+type Case = (&'static str, &'static str, fn(f64) -> f64, &'static str, f64);
+
 fn wifi_b() -> Vec<Row> {
     let noise = thermal(22e6, 7.0);
     let payload = 200;
-    let cases: [(&str, &str, fn(f64) -> f64, &str, f64); 4] = [
+    let cases: [Case; 4] = [
         ("1", "1e6", dsss1, "½ e^(−22 SNR)", -4.0),
         (
             "2",
@@ -97,7 +100,7 @@ fn wifi_b() -> Vec<Row> {
             5.5,
         ),
     ];
-    let row = |(mbps, rate, error, form, snr): (&str, &str, fn(f64) -> f64, &str, f64)| {
+    let row = |(mbps, rate, error, form, snr): Case| {
         let ratio = ratio(snr);
         // Behind the header, 48 bits at 1 Mb/s.
         let rest = 1.0 - frame(error(ratio), 8 * (36 + payload));
