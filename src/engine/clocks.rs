@@ -115,7 +115,10 @@ mod tests {
         let mean = skews.iter().sum::<f64>() / 3000.0;
         let square = skews.iter().map(|skew| skew * skew).sum::<f64>() / 3000.0;
         assert!(mean.abs() < 4.0 * 50e-6 / 9000.0_f64.sqrt(), "{mean}");
-        assert!((square.sqrt() / (50e-6 / 3.0_f64.sqrt()) - 1.0).abs() < 0.04, "{square}");
+        assert!(
+            (square.sqrt() / (50e-6 / 3.0_f64.sqrt()) - 1.0).abs() < 0.04,
+            "{square}"
+        );
     }
 
     proptest! {

@@ -79,7 +79,13 @@ fn sent(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, preflig
         formula,
     };
     let form = exact(airtime, "the technology's layout of a frame");
-    push("airtime_s", "airtime of a frame", "s", form, "on all its channels together");
+    push(
+        "airtime_s",
+        "airtime of a frame",
+        "s",
+        form,
+        "on all its channels together",
+    );
     let capacity = radio.capacity(stream);
     push(
         "capacity_robots",
@@ -138,7 +144,11 @@ fn met(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, prefligh
             let overlap = prediction("overlap_ratio", OVERLAPS, "1", overlap, assumes);
             preflight.predictions.push(overlap);
         }
-        None => preflight.refuse("overlap_ratio", OVERLAPS, "no closed form holds for this medium access at this load"),
+        None => preflight.refuse(
+            "overlap_ratio",
+            OVERLAPS,
+            "no closed form holds for this medium access at this load",
+        ),
     }
     match radio.mean_watts(stream, broadcasts.sending) {
         Some(watts) => {
@@ -148,7 +158,9 @@ fn met(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, prefligh
                 ..watts
             };
             let assumes = "of a robot; P of listening, sending, turning round and receiving, times the trial's length";
-            preflight.predictions.push(prediction("radio.energy_J", ENERGY, "J", energy, assumes));
+            preflight
+                .predictions
+                .push(prediction("radio.energy_J", ENERGY, "J", energy, assumes));
         }
         None => preflight.refuse(
             "radio.energy_J",

@@ -157,7 +157,10 @@ mod tests {
         };
         assert_eq!(due.as_nanos(), 101_001_001_002); // 100.9 s by a clock that loses a millisecond a second.
         assert_eq!(heard, secs(98.0));
-        assert_eq!((input.inbox[0].at, input.inbox[0].frame.sent_at), (secs(98.0), secs(90.0)));
+        assert_eq!(
+            (input.inbox[0].at, input.inbox[0].frame.sent_at),
+            (secs(98.0), secs(90.0))
+        );
         assert_eq!(robot.into_inner().0, [99.9, 90.09, 97.902]);
     }
 }

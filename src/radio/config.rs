@@ -10,9 +10,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Map, Value};
 
 use super::disk_config::{DiskConfig, LatencyConfig, LossConfig, SensingConfig, WallsConfig};
-use super::medium::RadioKind as _;
 use super::propagation::{FadingConfig, PathLossConfig, ShadowingConfig};
-use super::shared::{AccessConfig, CaptureConfig, NoiseConfig, SharedConfig};
+use super::shared::{AccessConfig, CaptureConfig, NoiseConfig, SharedConfig, spelt_out};
 use super::technology::TechnologyConfig;
 use crate::quantity::{Finite, NonNegative, Positive};
 
@@ -118,6 +117,7 @@ struct Fields {
     sensing: Option<SensingConfig>,
     walls: Option<WallsConfig>,
     technology: Option<TechnologyConfig>,
+    #[serde(deserialize_with = "spelt_out")]
     access: Option<AccessConfig>,
     transmit_power: Option<Finite>,
     transmit_power_spread: Option<NonNegative>,

@@ -29,6 +29,7 @@ mod latency;
 mod law;
 mod loss;
 mod medium;
+mod memo;
 mod modulation;
 pub mod propagation;
 mod reach;

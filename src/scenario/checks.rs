@@ -108,7 +108,8 @@ fn statuses_fit(scenario: &Scenario) -> Option<Problem> {
     let topics = scenario.topics().len();
     let most = scenario.radio.longest_message(topics, scenario.gossip.piggyback)?;
     (bytes > f64::from(most)).then(|| {
-        let message = format!("a status of {bytes} bytes never fits a frame of this radio, which carries at most {most}");
+        let message =
+            format!("a status of {bytes} bytes never fits a frame of this radio, which carries at most {most}");
         let help = "take a `technology` with longer frames, or a protocol with shorter statuses";
         Problem::new("radio", message, help).with(&["protocol"])
     })

@@ -214,7 +214,11 @@ impl Setup {
     ) -> Result<Ended<P, O>, RunError> {
         let streams = self.streams();
         let robots = poses.len();
-        let control_steps = ControlSteps::new(&self.first_steps(robots, streams), self.control.period(), self.clocks(robots));
+        let control_steps = ControlSteps::new(
+            &self.first_steps(robots, streams),
+            self.control.period(),
+            self.clocks(robots),
+        );
         let world = World::new(&self.motion, &self.arena, poses, medium.reach().farthest());
         let rhythm = self.rhythm();
         let air = Air::<P>::new(

@@ -8,7 +8,8 @@ use desim::simulation::DriverKind;
 use tokio_util::sync::CancellationToken;
 
 fn scenario(fields: &str) -> Scenario {
-    let text = format!("Scenario(name: \"clocks\", arena: (size: (4.0, 4.0)), metrics: (sample_interval: 0.0), {fields})");
+    let text =
+        format!("Scenario(name: \"clocks\", arena: (size: (4.0, 4.0)), metrics: (sample_interval: 0.0), {fields})");
     parse("clocks.ron", &text, &[]).unwrap_or_else(|report| panic!("{text}\n{report}"))
 }
 
@@ -27,10 +28,17 @@ fn control_steps_go_by_each_robots_own_clock() {
              control: (clock_drift: {:?}), motion: (tick: 0.1)",
             drift * 1e6
         ));
-        run(&scenario, DriverKind::Inline).robot_steps
+        run(&scenario, DriverKind::Inline)
+            .robots
+            .iter()
+            .map(|robot| robot.steps)
+            .collect::<Vec<u64>>()
     };
     assert!(steps(0.0).iter().all(|steps| *steps == 10_000 || *steps == 10_001));
-    let shares: Vec<f64> = steps(DRIFT).iter().map(|steps| *steps as f64 / 10_000.5 - 1.0).collect();
+    let shares: Vec<f64> = steps(DRIFT)
+        .iter()
+        .map(|steps| *steps as f64 / 10_000.5 - 1.0)
+        .collect();
     let within = DRIFT + 1e-4;
     assert!(shares.iter().all(|share| share.abs() <= within), "{shares:?}");
     let mean = shares.iter().sum::<f64>() / 60.0;
@@ -47,7 +55,11 @@ fn drifting_robots_are_the_same_run_under_both_drivers() {
              detector: Timeout(0.35), radio: (range: 3.0, loss: Bernoulli(0.5), latency: Constant(0.01))"
         ));
         let [actors, inline] = [DriverKind::Actors, DriverKind::Inline].map(|driver| run(&scenario, driver));
-        assert!(inline.detection.suspicions.len() > 20, "{}", inline.detection.suspicions.len());
+        assert!(
+            inline.detection.suspicions.len() > 20,
+            "{}",
+            inline.detection.suspicions.len()
+        );
         assert_eq!(actors, inline);
     }
 }
@@ -63,7 +75,7 @@ fn timeouts_go_by_the_clock_of_who_waits() {
             drift * 1e6
         ));
         let record = run(&scenario, DriverKind::Inline);
-        let waited = |suspicion: &desim::metrics::detection::Suspicion| suspicion.at.since(suspicion.heard).as_secs();
+        let waited = |suspicion: desim::metrics::detection::Suspicion| suspicion.at.since(suspicion.heard).as_secs();
         record.detection.suspicions.iter().map(waited).collect::<Vec<f64>>()
     };
     let right = waits(0.0);
@@ -72,7 +84,10 @@ fn timeouts_go_by_the_clock_of_who_waits() {
     let drifting = waits(DRIFT);
     assert_eq!(drifting.len(), 29);
     let [least, most] = [f64::min, f64::max].map(|choose| drifting.iter().copied().reduce(choose).expect("29"));
-    assert!(least > 20.0 / (1.0 + DRIFT) - 1e-6 && most < 20.0 / (1.0 - DRIFT) + 1e-6, "{least} {most}");
+    assert!(
+        least > 20.0 / (1.0 + DRIFT) - 1e-6 && most < 20.0 / (1.0 - DRIFT) + 1e-6,
+        "{least} {most}"
+    );
     assert!(most - least > 20.0 * DRIFT, "{least} {most}");
 }
 

@@ -77,11 +77,16 @@ fn declare(registry: &mut Registry) {
         [sum(record, RobotAir::never_sent), sum(record, |robot| robot.frames)]
     });
     let apart = (DIMENSIONLESS, Better::Lower, Estimator::ShareOf);
-    registry.add_ratio("radio.strayed", "messages received from out of range", apart, |record| {
-        let strayed = sum(record, |robot| robot.strayed);
-        let delivered: u64 = record.ledger.iter().map(|fates| fates.delivered).sum();
-        [strayed, strayed + delivered as f64]
-    });
+    registry.add_ratio(
+        "radio.strayed",
+        "messages received from out of range",
+        apart,
+        |record| {
+            let strayed = sum(record, |robot| robot.strayed);
+            let delivered: u64 = record.ledger.iter().map(|fates| fates.delivered).sum();
+            [strayed, strayed + delivered as f64]
+        },
+    );
     let energy = ("J", Better::Lower, Estimator::Mean);
     registry.add_plain("radio.energy_J", "energy of a robot's radio", energy, energy_j);
     let power = ("dBm", Better::Higher, Estimator::Signed);

@@ -12,6 +12,7 @@ mod shadowing;
 mod walls;
 mod waves;
 
+pub(in crate::radio) use fading::mean;
 pub use fading::{Fading, FadingConfig};
 pub use path_loss::{BreakPointConfig, LogDistanceConfig, PathLoss, PathLossConfig, TwoRayConfig};
 pub use shadowing::{Shadowing, ShadowingConfig};

@@ -1,7 +1,7 @@
 //! Who takes up what a robot or a jammer sends, and how strongly. Links whose ends stand still keep their strengths.
 
 use super::link::{LinkBudget, Source, hides};
-use super::receiver::milliwatts;
+use super::receiver::{dbm, milliwatts};
 use crate::engine::{ActorId, SimTime};
 use crate::geometry::Vec2;
 use crate::radio::{Placed, Places};
@@ -15,6 +15,8 @@ pub(super) struct Link {
     /// How strong the source is there over fading, and at present, milliwatts.
     mean: f64,
     pub power: f64,
+    /// The latter in dBm, if that is kept; NaN if it changes all the time.
+    pub dbm: f32,
 }
 
 /// Those who take up what one source sends.
@@ -97,6 +99,7 @@ impl Audiences {
         let audience = &mut self.of[place];
         std::mem::swap(&mut self.known, &mut audience.links);
         audience.links.clear();
+        let kept = places.standing().is_some() && !budget.fading.drifts();
         // Others may have come into the way of light, and fields may drift.
         let keeps = audience.here == here && budget.infrared.is_none() && !budget.fading.drifts();
         if keeps {
@@ -117,15 +120,19 @@ impl Audiences {
             }
             let to = (robot, there);
             let mean = budget.mean_dbm(source, here, to);
-            if mean < budget.floor || (budget.infrared.is_some() && is_hidden(source, here, to, &self.near, self.body_radius)) {
+            if mean < budget.floor
+                || (budget.infrared.is_some() && is_hidden(source, here, to, &self.near, self.body_radius))
+            {
                 continue;
             }
             let mean = milliwatts(mean);
+            let power = mean * budget.gain(source, here, to, now);
             audience.links.push(Link {
                 robot,
                 there,
                 mean,
-                power: mean * budget.gain(source, here, to, now),
+                power,
+                dbm: if kept { dbm(power) as f32 } else { f32::NAN },
             });
         }
         if keeps {

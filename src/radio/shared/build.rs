@@ -12,6 +12,7 @@ use super::config::SharedConfig;
 use super::ear::Ear;
 use super::jammer::Jammers;
 use super::link::{self, LinkBudget};
+use super::range::Levels;
 use super::receiver::Receiver;
 use super::station::Radio;
 use super::{Shared, range};
@@ -26,10 +27,6 @@ use crate::radio::{Links, Obstacle, RadioSite};
 /// Where in its round of channels each receiver begins.
 const SCANS: Purpose = Purpose::new("radio.scans");
 
-/// The share of lone frames that come through between robots that count as in range, and the least that is worth a thought.
-const IN_RANGE: f64 = 0.5;
-const FAINTEST: f64 = 0.01;
-
 const POWERS: Purpose = Purpose::new("radio.powers");
 
 /// Where there is no noise, what is left out is what is so many dB below the sensitivity, whatever `negligible` says more.
@@ -41,11 +38,15 @@ impl SharedConfig {
         let spread = self.spread(site.streams, site.robots, phy.transmit_power);
         let sigma = self.shadowing.as_ref().map_or(0.0, |shadowing| shadowing.sigma.get());
         let fading = Fading::new(&self.fading, &site.streams, phy.frequency);
-        let level = |probability| match phy.infrared {
-            Some(_) => link::UNSEEN_DBM,
-            None => range::threshold_dbm(phy, &self.fading, self.range_payload.into(), probability),
+        let levels = match phy.infrared {
+            Some(_) => Levels {
+                in_range: link::UNSEEN_DBM,
+                faintest: link::UNSEEN_DBM,
+            },
+            None => range::levels(phy, &self.fading, self.range_payload.into()),
         };
-        let noise = phy.noise.max(phy.sensitivity - QUIET_DB);
+        // What is received below the noise, as spread spectra are, is no less there for that.
+        let weakest = phy.noise.max(phy.sensitivity - QUIET_DB).min(phy.sensitivity);
         let strongest = |levels: &[f64]| levels.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         LinkBudget {
             path: PathLoss::new(&self.path_loss, phy.frequency),
@@ -60,12 +61,12 @@ impl SharedConfig {
             sends: spread.0,
             gains: spread.1,
             infrared: phy.infrared.map(|infrared| infrared.range_m),
-            threshold: level(IN_RANGE),
-            faintest: level(FAINTEST),
+            threshold: levels.in_range,
+            faintest: levels.faintest,
             floor: if phy.infrared.is_some() {
                 link::UNSEEN_DBM
             } else {
-                noise - self.negligible.get()
+                weakest - self.negligible.get()
             },
             sigma,
         }

@@ -16,8 +16,8 @@ use crate::radio::technology::{Phy, TechnologyConfig};
 pub struct SharedConfig {
     /// What robots talk by.
     pub technology: TechnologyConfig,
-    /// When a robot that has something to send does.
-    #[serde(default)]
+    /// When a robot that has something to send does. `None`, spelt out: at once, on whatever there is; left out: as the technology has it.
+    #[serde(default, deserialize_with = "spelt_out", skip_serializing_if = "Option::is_none")]
     pub access: Option<AccessConfig>,
     /// What robots send with, dBm.
     #[serde(default)]
@@ -54,7 +54,7 @@ pub struct SharedConfig {
     /// What else is on air.
     #[serde(default)]
     pub noise: Vec<NoiseConfig>,
-    /// Bursts that reach a robot with less than its noise less so many dB are left out there: they are not even interference.
+    /// Bursts that reach a robot with less than its noise, or its sensitivity if that is less, less so many dB are left out there: they are not even interference.
     #[serde(default = "ten_decibels")]
     pub negligible: NonNegative,
     /// Bytes that every message in a frame carries beside its payload. `None`: one for its topic, if the protocol has more than one, and two for its length where
@@ -122,6 +122,14 @@ impl JsonSchema for CaptureConfig {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({ "type": ["number", "null"], "minimum": 0.0 })
     }
+}
+
+/// Medium access that a scenario names: `None` is one.
+pub(in crate::radio) fn spelt_out<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<AccessConfig>, D::Error> {
+    let access = Option::<AccessConfig>::deserialize(deserializer)?;
+    Ok(Some(access.unwrap_or(AccessConfig::None)))
 }
 
 fn none() -> NonNegative {

@@ -18,6 +18,8 @@ pub(super) struct Heard {
     pub ends: SimTime,
     /// Its power there, milliwatts.
     pub power: f64,
+    /// The same in dBm, if that is known already, or NaN.
+    pub dbm: f32,
     /// On which channel.
     pub channel: u8,
     /// Whether it is no frame but noise.
@@ -120,12 +122,7 @@ impl Ear {
 
     /// All that is on air on `channel` at any time from `from` to before `until`, as it began. What began more than the longest burst
     /// before is over, so that it does not matter how much is remembered.
-    pub fn during(
-        &self,
-        channel: u8,
-        from: SimTime,
-        until: SimTime,
-    ) -> impl Iterator<Item = &Heard> + Clone {
+    pub fn during(&self, channel: u8, from: SimTime, until: SimTime) -> impl Iterator<Item = &Heard> + Clone {
         let (first, last) = (from - self.longest, until);
         let first = self.heard.partition_point(|heard| heard.begins < first);
         let heard = self.heard.range(first..).take_while(move |heard| heard.begins < last);

@@ -1,5 +1,6 @@
 //! Bursts: they begin, reach everybody in earshot, end, are judged, and are answered.
 
+use super::Shared;
 use super::access::{self, Next};
 use super::agenda::Task;
 use super::audience::Link;
@@ -8,7 +9,6 @@ use super::ear::{Ear, Heard};
 use super::link::{NOBODY, Source};
 use super::receiver::dbm;
 use super::station::Doing;
-use super::Shared;
 use crate::engine::{ActorId, SimTime, Span, prefetch};
 use crate::geometry::Vec2;
 use crate::radio::draw::FrameCopy;
@@ -79,6 +79,7 @@ impl Shared {
             begins: now,
             ends,
             power: f64::INFINITY,
+            dbm: f32::NAN,
             channel,
             is_noise: false,
         };
@@ -113,6 +114,7 @@ impl Shared {
             begins: now,
             ends,
             power: f64::INFINITY,
+            dbm: f32::NAN,
             channel: 0,
             is_noise: true,
         };
@@ -126,9 +128,7 @@ impl Shared {
     /// Whoever a burst from `here` reaches takes it up.
     fn reach(&mut self, source: Source, here: Vec2, mut heard: Heard, places: &dyn Places) {
         let since = self.since(heard.begins);
-        let audience = self
-            .audiences
-            .look_up(heard.begins, source, here, &self.budget, places);
+        let audience = self.audiences.look_up(heard.begins, source, here, &self.budget, places);
         for (place, link) in audience.iter().enumerate() {
             if self.prefetches {
                 prefetch_ears(&self.ears, audience, place);
@@ -136,7 +136,7 @@ impl Shared {
             if link.power <= 0.0 {
                 continue;
             }
-            heard.power = link.power;
+            (heard.power, heard.dbm) = (link.power, link.dbm);
             let ear = &mut self.ears[link.robot.index()];
             ear.hear(heard, since);
             if self.receiver.is_busy(&heard) {
@@ -198,7 +198,8 @@ impl Shared {
         let waveform = self.receiver.waveform(burst);
         if self.prefetches {
             open.iter().for_each(|open| prefetch(&self.ears[open.receiver.index()]));
-            open.iter().for_each(|open| self.ears[open.receiver.index()].prefetch_contents());
+            open.iter()
+                .for_each(|open| self.ears[open.receiver.index()].prefetch_contents());
         }
         open.retain_mut(|open| {
             let receiver = open.receiver;
@@ -208,7 +209,11 @@ impl Shared {
             if self.budget.infrared.is_none()
                 && let Some(heard) = self.ears[receiver.index()].of(id)
             {
-                open.power = dbm(heard.power) as f32;
+                open.power = if heard.dbm.is_nan() {
+                    dbm(heard.power) as f32
+                } else {
+                    heard.dbm
+                };
             }
             if let Err(why) = self.verdict(id, (burst, &waveform), receiver) {
                 // Of the channels that it did not listen to it knows nothing.
@@ -235,12 +240,7 @@ impl Shared {
     }
 
     /// Whether `receiver` has got a burst that ends now, or why not.
-    fn verdict(
-        &self,
-        id: BurstId,
-        (burst, waveform): (&Burst, &Waveform),
-        receiver: ActorId,
-    ) -> Result<(), LossCause> {
+    fn verdict(&self, id: BurstId, (burst, waveform): (&Burst, &Waveform), receiver: ActorId) -> Result<(), LossCause> {
         if burst.cut {
             return Err(LossCause::SenderDown);
         }

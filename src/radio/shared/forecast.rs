@@ -43,9 +43,18 @@ impl SharedConfig {
     #[must_use]
     pub fn capacity(&self, stream: Stream) -> Form {
         let phy = self.phy();
-        let delay = self.access().scheme(&self.technology, &phy, 1, 0.0).least_delay().as_secs();
+        let delay = self
+            .access()
+            .scheme(&self.technology, &phy, 1, 0.0)
+            .least_delay()
+            .as_secs();
         let (each, formula) = match self.access() {
-            AccessConfig::Tdma { slot, slots: None, frame: None, .. } => (slot.get(), "1/(λ slot)"),
+            AccessConfig::Tdma {
+                slot,
+                slots: None,
+                frame: None,
+                ..
+            } => (slot.get(), "1/(λ slot)"),
             AccessConfig::CsmaCa(_) | AccessConfig::Dcf(_) => {
                 (self.airtime_s(stream.payload) + delay, "1/(λ (T + least access delay))")
             }
@@ -109,13 +118,15 @@ impl SharedConfig {
             return None;
         }
         let turnaround = self.access().scheme(&self.technology, &phy, 1, 0.0).turnaround();
-        let turned = if turnaround > Span::ZERO { 2.0 * turnaround.as_secs() } else { 0.0 };
+        let turned = if turnaround > Span::ZERO {
+            2.0 * turnaround.as_secs()
+        } else {
+            0.0
+        };
         let own = sending * stream.per_second;
         let others = load - own * airtime;
-        let value = listen
-            + own * airtime * (send - listen)
-            + own * turned * (turning - listen)
-            + others * (receive - listen);
+        let value =
+            listen + own * airtime * (send - listen) + own * turned * (turning - listen) + others * (receive - listen);
         // Frames that overlap are heard once.
         let accuracy = load * load * (receive - listen).abs();
         Some(Form {

@@ -29,6 +29,7 @@ mod receiver;
 mod station;
 
 pub use access::{AccessConfig, CsmaCaConfig, DcfConfig, PacedConfig};
+pub(in crate::radio) use config::spelt_out;
 pub use config::{CaptureConfig, SharedConfig};
 pub use forecast::{Form, Stream};
 pub use jammer::NoiseConfig;

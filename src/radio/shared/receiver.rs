@@ -4,10 +4,13 @@
 //! interference and noise is constant, so the probability that all bits are right is a product over these chunks; one keyed number decides. The better the
 //! ratio the greater is that probability, and what survives in worse conditions survives in better ones.
 
+use std::sync::Arc;
+
 use super::burst::{Burst, Content};
 use super::ear::{Ear, Heard};
 use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
 use crate::radio::draw::unit_interval;
+use crate::radio::memo::Memo;
 use crate::radio::technology::{Phy, Waveform};
 use crate::radio::{ErrorTable, LossCause, Modulation};
 
@@ -228,18 +231,22 @@ impl Receiver {
 
 /// How the modulations of a technology survive: those of its frames and acknowledgements in which bits can go wrong.
 #[derive(Debug)]
-pub(super) struct Tables(Vec<(Modulation, ErrorTable)>);
+pub(super) struct Tables(Vec<(Modulation, Arc<ErrorTable>)>);
+
+/// Those of all radios of the process.
+static KNOWN: Memo<Modulation, Arc<ErrorTable>> = Memo::new();
 
 impl Tables {
     pub fn of(phy: &Phy) -> Self {
-        let mut tables: Vec<(Modulation, ErrorTable)> = Vec::new();
+        let mut tables: Vec<(Modulation, Arc<ErrorTable>)> = Vec::new();
         let acknowledgement = phy.acknowledgement();
         let sections = phy.sections(1);
         let sections = sections.chain(acknowledgement.iter().flat_map(Waveform::sections));
         for section in sections {
             let modulation = section.modulation;
             if modulation != Modulation::None && tables.iter().all(|table| table.0 != modulation) {
-                tables.push((modulation, ErrorTable::new(modulation)));
+                let table = KNOWN.get(modulation, |modulation| Arc::new(ErrorTable::new(*modulation)));
+                tables.push((modulation, table));
             }
         }
         Self(tables)

@@ -227,7 +227,10 @@ impl<P: Protocol> Air<P> {
             }
         }
         for arrival in self.fates.arrivals.drain(..) {
-            debug_assert!(!self.is_beyond[arrival.receiver.index()], "a medium with links decides later");
+            debug_assert!(
+                !self.is_beyond[arrival.receiver.index()],
+                "a medium with links decides later"
+            );
             if self.tell_reached {
                 self.reached.push(arrival.receiver);
             }
@@ -264,8 +267,14 @@ impl<P: Protocol> Air<P> {
     #[inline(never)]
     fn await_fates<const ADDRESSED: bool>(&mut self, aboard: &[Spoken<P::Heard>]) {
         if self.prefetches {
-            self.fates.open.iter().for_each(|receiver| prefetch(&self.inboxes[receiver.index()]));
-            self.fates.open.iter().for_each(|receiver| self.inboxes[receiver.index()].prefetch_end());
+            self.fates
+                .open
+                .iter()
+                .for_each(|receiver| prefetch(&self.inboxes[receiver.index()]));
+            self.fates
+                .open
+                .iter()
+                .for_each(|receiver| self.inboxes[receiver.index()].prefetch_end());
         }
         for receiver in self.fates.open.drain(..) {
             let inbox = &mut self.inboxes[receiver.index()];

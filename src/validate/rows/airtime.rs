@@ -69,7 +69,7 @@ pub fn rows() -> Vec<Row> {
 fn kilobot() -> Row {
     let load = "senders: Given([0]), to: Next, when: Periodic(2.0), payload: 9";
     let place = "arena: (size: (1.0, 1.0)),\n    motion: (body_radius: 0.0165, max_speed: 0.01),\n    swarm: (robots: 2, deploy: At([(0.0, 0.0), (0.05, 0.0)]))";
-    let setting = traffic(20.0, place, load, "technology: Kilobot(), access: Some(None)");
+    let setting = traffic(20.0, place, load, "technology: Kilobot(), access: None");
     Row::new(MODEL, "airtime.kilobot", (4160.0, "µs"), setting, reading::latency(US))
         .exact()
         .form("130 bit times of 256 cycles at 8 MHz (the Kilobot's firmware)")

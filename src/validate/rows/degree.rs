@@ -65,7 +65,7 @@ fn factor(name: &str, radius: f64, radio: &str, expected: f64) -> Row {
         size = 2.0 * disc + 10.0
     );
     let radio = format!(
-        "technology: Custom(bit_rate: None, sensitivity: -80.0), path_loss: LogDistance(exponent: 3.0, reference_loss: 40.0), access: Some(None), negligible: 60.0, {radio}"
+        "technology: Custom(bit_rate: None, sensitivity: -80.0), path_loss: LogDistance(exponent: 3.0, reference_loss: 40.0), access: None, negligible: 60.0, {radio}"
     );
     let setting = traffic(1.0, &place, "to: Robot(0), when: Periodic(1.0), payload: 20", &radio);
     let heard = move |record: &TrialRecord| -> Part {

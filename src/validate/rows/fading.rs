@@ -93,7 +93,7 @@ fn outage(name: &str, of: Law, x: f64, form: &str) -> Row {
 fn followed(of: Law, rho: f64) -> Setting {
     let seconds = 4.0;
     let radio = format!(
-        "{}, access: Some(None), fading: {}",
+        "{}, access: None, fading: {}",
         hears(db(rho * rho)),
         law(of, &format!("doppler: {DOPPLER:?}"))
     );

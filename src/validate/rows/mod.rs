@@ -79,7 +79,7 @@ fn traffic(seconds: f64, place: &str, traffic: &str, radio: &str) -> Setting {
 /// Robot 0 sends to robot 1, `metres` away, without a medium between them.
 fn link(seconds: f64, metres: f64, when: &str, payload: u32, radio: &str) -> Setting {
     let load = format!("senders: Given([0]), to: Next, when: {when}, payload: {payload}");
-    traffic(seconds, &pair(metres), &load, &format!("{radio}, access: Some(None)"))
+    traffic(seconds, &pair(metres), &load, &format!("{radio}, access: None"))
 }
 
 #[cfg(test)]

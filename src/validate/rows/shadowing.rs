@@ -33,7 +33,7 @@ pub fn couples(couples: &[[(f64, f64); 2]], copies: u32, apart: f64, radio: &str
         senders.join(", ")
     );
     let radio = format!(
-        "technology: Custom(bit_rate: None, sensitivity: -300.0), {}, access: Some(None), {radio}",
+        "technology: Custom(bit_rate: None, sensitivity: -300.0), {}, access: None, {radio}",
         super::EQUAL_LOSS
     );
     traffic(0.1, &place, &load, &radio)

@@ -225,7 +225,10 @@ fn robots_out_of_range_hear_now_and_then() {
         };
         let at = |power: f64, seconds: f64, trials: u32| {
             let traffic = "when: Poisson(200.0), payload: 20, senders: Given([0])";
-            runs(&with_robots(scenario(seconds, traffic, EVERYBODY, &radio(power)), 2), trials)
+            runs(
+                &with_robots(scenario(seconds, traffic, EVERYBODY, &radio(power)), 2),
+                trials,
+            )
         };
         // The level at which half come through, as the radio itself has it.
         let threshold = (-500..-300)
@@ -238,7 +241,10 @@ fn robots_out_of_range_hear_now_and_then() {
             air.robots[1].strayed as f64 / air.robots[0].on_air as f64
         };
         if below_db < 0.0 {
-            assert!(records.iter().all(|record| fates(record).offered == 0), "nothing is offered");
+            assert!(
+                records.iter().all(|record| fates(record).offered == 0),
+                "nothing is offered"
+            );
             measured(&records, strayed).agrees("strayed", chance, 0.0, 0.03);
         } else {
             measured(&records, delivery).agrees("in range", chance, 0.0, 0.03);

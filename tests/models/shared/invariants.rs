@@ -68,16 +68,32 @@ fn any_air() -> impl Strategy<Value = Any> {
     let words = (
         technology(),
         access(),
-        prop::sample::select(vec!["", "capture: None,", "capture: 0.0,", "capture: 6.0,", "capture: inf,"]),
-        prop::sample::select(vec!["None", "Rayleigh()", "Rician(k: 4.0, doppler: 20.0)", "Nakagami(m: 1.5)"]),
+        prop::sample::select(vec![
+            "",
+            "capture: None,",
+            "capture: 0.0,",
+            "capture: 6.0,",
+            "capture: inf,",
+        ]),
+        prop::sample::select(vec![
+            "None",
+            "Rayleigh()",
+            "Rician(k: 4.0, doppler: 20.0)",
+            "Nakagami(m: 1.5)",
+        ]),
         prop::sample::select(vec!["Pass", "Block", "Loss(6.0)"]),
         prop::sample::select(vec!["Everyone", "Next", "Robot(0)"]),
         prop::sample::select(vec![
-            "", "Silence(robots: [0], at: 1.0, lasts: For(0.7))", "Mute(robots: [0], at: 0.4, lasts: For(1.0)), Deaf(robots: [0], at: 1.2)",
-            "Crash(robots: [0], at: 0.9, lasts: For(0.333))", "Partition(line: ((0.1, -5.0), (0.0, 5.0)), during: Between(0.5, 1.5))",
+            "",
+            "Silence(robots: [0], at: 1.0, lasts: For(0.7))",
+            "Mute(robots: [0], at: 0.4, lasts: For(1.0)), Deaf(robots: [0], at: 1.2)",
+            "Crash(robots: [0], at: 0.9, lasts: For(0.333))",
+            "Partition(line: ((0.1, -5.0), (0.0, 5.0)), during: Between(0.5, 1.5))",
         ]),
         prop::sample::select(vec![
-            "", "Jammer(at: (1.0, 1.0), power: 5.0, from: 0.3, until: 1.7, pulses: (0.003, 0.01))", "Jammer(at: (0.0, 0.0), power: -20.0), Background(power: -90.0)",
+            "",
+            "Jammer(at: (1.0, 1.0), power: 5.0, from: 0.3, until: 1.7, pulses: (0.003, 0.01))",
+            "Jammer(at: (0.0, 0.0), power: -20.0), Background(power: -90.0)",
         ]),
     );
     let numbers = (
@@ -148,7 +164,12 @@ fn check(any: &Any) -> Result<u64, TestCaseError> {
     prop_assert_eq!(&inline.ledger, &actors.ledger);
     prop_assert_eq!(inline.digest, actors.digest);
     let _ = fates(&inline);
-    Ok(inline.air.iter().flat_map(|air| &air.robots).map(|robot| robot.frames).sum())
+    Ok(inline
+        .air
+        .iter()
+        .flat_map(|air| &air.robots)
+        .map(|robot| robot.frames)
+        .sum())
 }
 
 /// Over so many frames as `DESIM_FRAMES` says: few by default, a million before a release.
@@ -165,7 +186,9 @@ fn every_copy_has_one_fate_and_drivers_agree() {
             sent.set(sent.get() + check(&any)?);
             Ok(())
         };
-        runner.run(&any_air(), run).unwrap_or_else(|failure| panic!("{failure}"));
+        runner
+            .run(&any_air(), run)
+            .unwrap_or_else(|failure| panic!("{failure}"));
     }
     println!("{} frames", sent.get());
 }

@@ -30,13 +30,30 @@ fn airtime_overlaps_and_energy_are_as_predicted() {
         (8, "when: Periodic(0.1), payload: 60", "access: Aloha()"),
         (5, "when: Poisson(10.0), payload: 20", "access: CsmaCa()"),
         (20, "when: Poisson(10.0), payload: 20", "access: CsmaCa()"),
-        (12, "when: Poisson(10.0), payload: 20, senders: Given([0, 1, 2])", "access: CsmaCa()"),
-        (10, "when: Poisson(5.0), payload: 20", "access: Tdma(slot: 0.002, guard: 0.0)"),
+        (
+            12,
+            "when: Poisson(10.0), payload: 20, senders: Given([0, 1, 2])",
+            "access: CsmaCa()",
+        ),
+        (
+            10,
+            "when: Poisson(5.0), payload: 20",
+            "access: Tdma(slot: 0.002, guard: 0.0)",
+        ),
     ] {
         let scenario = cell(robots, traffic, radio);
         let preflight = Preflight::of(&scenario);
-        for name in ["airtime_s", "capacity_robots", "radio.airtime_share", "overlap_ratio", "radio.energy_J"] {
-            assert!(preflight.get(name).is_some(), "{robots} {traffic} {radio}: {name}\n{preflight:#?}");
+        for name in [
+            "airtime_s",
+            "capacity_robots",
+            "radio.airtime_share",
+            "overlap_ratio",
+            "radio.energy_J",
+        ] {
+            assert!(
+                preflight.get(name).is_some(),
+                "{robots} {traffic} {radio}: {name}\n{preflight:#?}"
+            );
         }
         let summary = summary(&scenario, 8);
         assert_eq!(surprises(&scenario, &summary), [], "{robots} {traffic} {radio}");
@@ -59,7 +76,9 @@ fn where_no_form_holds_the_reason_is_said() {
         let preflight = Preflight::of(scenario);
         assert_eq!(preflight.get(name), None);
         let why = preflight.not_predicted.iter().find(|refused| refused.name == name);
-        why.unwrap_or_else(|| panic!("{name} is refused: {preflight:#?}")).why.clone()
+        why.unwrap_or_else(|| panic!("{name} is refused: {preflight:#?}"))
+            .why
+            .clone()
     };
     let full = cell(50, "when: Poisson(20.0), payload: 100", "access: CsmaCa()");
     assert!(refused(&full, "overlap_ratio").contains("no closed form"));

@@ -32,8 +32,13 @@ impl FadingConfig {
     /// The mean of `value` over all gains, which `value` is handed: of what a frame's chance is, say, at the ratio that a gain leaves. By the midpoints of 2048 steps of the gain's logarithm: exact to some 1e-9 where
     /// `value` is smooth over a tenth of a dB; where it jumps, half a step's share of gains is in doubt, at most 0.005.
     pub fn mean_of(&self, value: impl Fn(f64) -> f64) -> f64 {
+        mean(&self.gains(), value)
+    }
+
+    /// Gains that stand for all, with their weights: what [`mean_of`](Self::mean_of) goes through.
+    pub(in crate::radio) fn gains(&self) -> Vec<[f64; 2]> {
         if *self == Self::None {
-            return value(1.0);
+            return vec![[1.0; 2]];
         }
         let [mut least, mut most] = [1.0; 2];
         while self.density_of_log(least) > NEGLIGIBLE {
@@ -43,14 +48,11 @@ impl FadingConfig {
             most *= OUTWARDS;
         }
         let (start, width) = (log(least), log(most / least) / f64::from(STEPS));
-        let [mut sum, mut weights] = [0.0; 2];
-        for step in 0..STEPS {
-            let gain = exp(start + (f64::from(step) + 0.5) * width);
-            let weight = self.density_of_log(gain);
-            sum += weight * value(gain);
-            weights += weight;
-        }
-        sum / weights
+        let gain = |step: u32| exp(start + (f64::from(step) + 0.5) * width);
+        (0..STEPS)
+            .map(gain)
+            .map(|gain| [gain, self.density_of_log(gain)])
+            .collect()
     }
 
     /// The density of the gain's logarithm where the gain is `x` > 0.
@@ -62,6 +64,16 @@ impl FadingConfig {
             Self::Nakagami { m, .. } => density_of_log(m.get(), m.get() * x),
         }
     }
+}
+
+/// The mean of `value` over gains with weights.
+pub(in crate::radio) fn mean(gains: &[[f64; 2]], value: impl Fn(f64) -> f64) -> f64 {
+    let [mut sum, mut weights] = [0.0; 2];
+    for &[gain, weight] in gains {
+        sum += weight * value(gain);
+        weights += weight;
+    }
+    sum / weights
 }
 
 /// Given a Poisson variate N of mean K, the gain times K + 1 is a gamma variate of shape N + 1; and that is below y where a Poisson variate of mean y is above N. So this is Σ over i of the chance that the latter is i and the former

@@ -7,6 +7,7 @@ mod shape;
 mod tests;
 
 pub use config::FadingConfig;
+pub(in crate::radio) use law::mean;
 
 use std::f64::consts::TAU;
 
