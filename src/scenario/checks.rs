@@ -11,8 +11,9 @@ use super::{Scenario, detector, gossip, limits, needs};
 pub fn problems(scenario: &Scenario) -> Vec<Problem> {
     let mut found = counts(scenario);
     found.extend(periods(scenario));
-    if found.is_empty() {
-        // Times and sizes are computed from counts and periods that hold.
+    let radio = scenario.radio.problems(scenario.swarm.robots, scenario.control.drift());
+    if found.is_empty() && radio.is_empty() {
+        // Times and sizes are computed from counts, periods and a radio that hold.
         found.extend(times(scenario));
         found.extend(detector::problems(scenario));
         found.extend(sizes(scenario));
@@ -20,7 +21,7 @@ pub fn problems(scenario: &Scenario) -> Vec<Problem> {
         found.extend(scenario.protocol.conflicts(&scenario.sections()));
     }
     found.extend(name(scenario));
-    found.extend(sections(scenario));
+    found.extend(sections(scenario, radio));
     if found.is_empty() {
         found.extend(room(scenario));
     }
@@ -69,23 +70,26 @@ fn counts(scenario: &Scenario) -> Vec<Problem> {
 }
 
 /// What each section finds wrong with itself.
-fn sections(scenario: &Scenario) -> Vec<Problem> {
+fn sections(scenario: &Scenario, radio: Vec<(String, String)>) -> Vec<Problem> {
     let Scenario {
         arena,
         motion,
         swarm,
-        radio,
         detector,
         ..
     } = scenario;
     let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
-    let protocol = scenario.protocol.problems(&scenario.sections());
+    // What fits a frame is asked of a radio that holds.
+    let protocol = match radio.is_empty() {
+        true => scenario.protocol.problems(&scenario.sections()),
+        false => Vec::new(),
+    };
     let faults = faults::problems(&scenario.faults, swarm.robots, scenario.protocol.roles());
     let around = ["swarm.robots", "arena.size", "motion.body_radius"];
     let sections: [(_, _, &[&str]); 7] = [
         ("arena", arena.problems(), &[]),
         ("motion", motion.problems(), &[]),
-        ("radio", radio.problems(swarm.robots, scenario.control.drift()), &[]),
+        ("radio", radio, &[]),
         ("swarm.deploy", deploy, &around),
         ("protocol", protocol, &["swarm.robots", "radio.range"]),
         ("detector", detector.problems(), &[]),

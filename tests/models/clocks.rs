@@ -24,7 +24,7 @@ fn control_steps_go_by_each_robots_own_clock() {
     const DRIFT: f64 = 10_000e-6;
     let steps = |drift: f64| {
         let scenario = scenario(&format!(
-            "time_limit: 1000.0, swarm: (robots: 60), protocol: Heartbeat, gossip: (status: (interval: 100.0)), \
+            "time_limit: 1000.0, swarm: (robots: 60, deploy: Uniform), protocol: Heartbeat, gossip: (status: (interval: 100.0)), \
              control: (clock_drift: {:?}), motion: (tick: 0.1)",
             drift * 1e6
         ));
@@ -51,7 +51,7 @@ fn control_steps_go_by_each_robots_own_clock() {
 fn drifting_robots_are_the_same_run_under_both_drivers() {
     for wake in ["ControlStep", "OnReception"] {
         let scenario = scenario(&format!(
-            "time_limit: 30.0, swarm: (robots: 20), protocol: Heartbeat, control: (clock_drift: 5000.0, wake: {wake}), \
+            "time_limit: 30.0, swarm: (robots: 20, deploy: Uniform), protocol: Heartbeat, control: (clock_drift: 5000.0, wake: {wake}), \
              detector: Timeout(0.35), radio: (range: 3.0, loss: Bernoulli(0.5), latency: Constant(0.01))"
         ));
         let [actors, inline] = [DriverKind::Actors, DriverKind::Inline].map(|driver| run(&scenario, driver));
@@ -70,7 +70,7 @@ fn timeouts_go_by_the_clock_of_who_waits() {
     const DRIFT: f64 = 0.05;
     let waits = |drift: f64| {
         let scenario = scenario(&format!(
-            "time_limit: 60.0, swarm: (robots: 30), protocol: Heartbeat, control: (clock_drift: {:?}), detector: Timeout(20.0), \
+            "time_limit: 60.0, swarm: (robots: 30, deploy: Uniform), protocol: Heartbeat, control: (clock_drift: {:?}), detector: Timeout(20.0), \
              radio: (range: 9.0), faults: [Crash(robots: [0], at: 20.0)]",
             drift * 1e6
         ));
@@ -97,7 +97,7 @@ fn timeouts_go_by_the_clock_of_who_waits() {
 fn slots_need_a_guard_against_drift() {
     let collided = |guard: &str, drift: &str, slot: &str| {
         let scenario = scenario(&format!(
-            "time_limit: 60.0, swarm: (robots: 20), protocol: Traffic(when: Saturated, payload: 20), control: (period: 0.5, clock_drift: {drift}), \
+            "time_limit: 60.0, swarm: (robots: 20, deploy: Uniform), protocol: Traffic(when: Saturated, payload: 20), control: (period: 0.5, clock_drift: {drift}), \
              radio: Shared(technology: Ieee802154(), access: Tdma(slot: {slot}{guard}), capture: inf)"
         ));
         let record = run(&scenario, DriverKind::Inline);
@@ -111,11 +111,11 @@ fn slots_need_a_guard_against_drift() {
 
 #[test]
 fn a_slot_that_leaves_no_room_beside_its_guard_is_refused_and_so_are_clocks_that_are_hardly_clocks() {
-    let text = "Scenario(name: \"tight\", swarm: (robots: 5), protocol: Traffic(), control: (clock_drift: 50.0), \
+    let text = "Scenario(name: \"tight\", swarm: (robots: 5, deploy: Uniform), protocol: Traffic(), control: (clock_drift: 50.0), \
         radio: Shared(technology: Ieee802154(), access: Tdma(slot: 0.0015)))";
     let report = parse("tight.ron", text, &[]).expect_err("no room").to_string();
     assert!(report.contains("guard of 0.001 s"), "{report}");
-    let text = "Scenario(name: \"wild\", swarm: (robots: 5), protocol: Heartbeat, control: (clock_drift: 200000.0))";
+    let text = "Scenario(name: \"wild\", swarm: (robots: 5, deploy: Uniform), protocol: Heartbeat, control: (clock_drift: 200000.0))";
     let report = parse("wild.ron", text, &[]).expect_err("out of range").to_string();
     assert!(report.contains("clock_drift") && report.contains("100000"), "{report}");
 }

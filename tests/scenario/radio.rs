@@ -3,8 +3,9 @@
 use desim::scenario::parse;
 
 fn refusal(radio: &str, rest: &str) -> String {
-    let text =
-        format!("Scenario(\n    name: \"radio\",\n    swarm: (robots: 5),\n    radio: Shared({radio}),\n    {rest}\n)");
+    let text = format!(
+        "Scenario(\n    name: \"radio\",\n    swarm: (robots: 5, deploy: Uniform),\n    radio: Shared({radio}),\n    {rest}\n)"
+    );
     let report = parse("radio.ron", &text, &[]).expect_err(radio);
     report.to_string()
 }

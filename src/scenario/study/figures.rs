@@ -97,7 +97,7 @@ mod tests {
     fn figures_of_the_air_are_common_to_settings_that_all_share_it() {
         let (disk, shared) = (over(""), over("technology: Ieee802154()"));
         let of_air = |scenarios: &[&Scenario]| common(scenarios).iter().filter(|key| is_of_air(key)).count();
-        assert_eq!(of_air(&[&shared, &shared]), 11);
+        assert_eq!(of_air(&[&shared, &shared]), 12);
         assert_eq!((of_air(&[&shared, &disk]), of_air(&[&disk])), (0, 0));
         let none = unknown("radio.busy_share", &common(&[&shared, &disk]));
         assert!(

@@ -76,12 +76,12 @@ fn a_hidden_pair_over_802_15_4() {
     }
 }
 
-/// How often a frame that went on air was there, and how long medium access took with it the first time, ms.
+/// How often a frame was on air, those that never were among them.
 fn attempts(record: &TrialRecord) -> f64 {
     let robots = &record.air.as_ref().expect("a shared radio").robots;
-    let [attempts, on_air] = [|robot: &RobotAir| robot.attempts, |robot: &RobotAir| robot.on_air]
+    let [attempts, frames] = [|robot: &RobotAir| robot.attempts, |robot: &RobotAir| robot.frames]
         .map(|count| robots.iter().map(count).sum::<u64>() as f64);
-    attempts / on_air
+    attempts / frames
 }
 
 /// Frames round a ring, each acknowledged or sent again, as ns-3 decides.

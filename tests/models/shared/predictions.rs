@@ -27,7 +27,7 @@ fn airtime_overlaps_and_energy_are_as_predicted() {
     for (robots, traffic, radio) in [
         (20, "when: Poisson(8.0), payload: 20", "access: Aloha()"),
         (50, "when: Poisson(4.0), payload: 5", "access: Aloha()"),
-        (8, "when: Periodic(0.1), payload: 60", "access: Aloha()"),
+        (5, "when: Periodic(0.1), payload: 60", "access: Aloha()"),
         (5, "when: Poisson(10.0), payload: 20", "access: CsmaCa()"),
         (20, "when: Poisson(10.0), payload: 20", "access: CsmaCa()"),
         (
@@ -55,7 +55,9 @@ fn airtime_overlaps_and_energy_are_as_predicted() {
                 "{robots} {traffic} {radio}: {name}\n{preflight:#?}"
             );
         }
-        let summary = summary(&scenario, 8);
+        // Robots that send periodically meet in every period or never: trials differ much.
+        let trials = if traffic.contains("Periodic") { 100 } else { 8 };
+        let summary = summary(&scenario, trials);
         assert_eq!(surprises(&scenario, &summary), [], "{robots} {traffic} {radio}");
     }
 }

@@ -16,9 +16,15 @@ fn each_of_200_broken_study_files_is_read_or_refused_and_the_command_ends_in_exi
     // Where their bases are, as seen from the file.
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let studies = folder.path().join("studies");
-    fs::create_dir_all(studies.join("bases")).expect("the folder can be written to");
-    for base in ["loss20.ron", "heartbeat.ron", "studies/bases/crashes.ron"] {
-        fs::copy(scenarios.join(base), folder.path().join(base)).expect("shipped files can be copied");
+    for place in [".", "radio", "studies/bases"] {
+        fs::create_dir_all(folder.path().join(place)).expect("the folder can be written to");
+        for file in fs::read_dir(scenarios.join(place)).expect("the folder can be read") {
+            let file = file.expect("the folder can be read");
+            if file.path().extension().is_some_and(|ending| ending == "ron") {
+                let copy = folder.path().join(place).join(file.file_name());
+                fs::copy(file.path(), copy).expect("shipped files can be copied");
+            }
+        }
     }
     let file = studies.join("mutant.ron");
     let mut refused = 0;
