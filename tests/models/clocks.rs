@@ -24,7 +24,7 @@ fn control_steps_go_by_each_robots_own_clock() {
     const DRIFT: f64 = 10_000e-6;
     let steps = |drift: f64| {
         let scenario = scenario(&format!(
-            "time_limit: 1000.0, swarm: (robots: 60, deploy: Uniform), protocol: Heartbeat, gossip: (status: (interval: 100.0)), \
+            "time_limit: 1000.0, swarm: (robots: 60, deploy: Uniform), protocol: Heartbeat, gossip: (status: (interval: 100.0)), detector: None, \
              control: (clock_drift: {:?}), motion: (tick: 0.1)",
             drift * 1e6
         ));

@@ -4,10 +4,12 @@ use desim::scenario::parse;
 
 fn refusal(radio: &str, rest: &str) -> String {
     let text = format!(
-        "Scenario(\n    name: \"radio\",\n    swarm: (robots: 5, deploy: Uniform),\n    radio: Shared({radio}),\n    {rest}\n)"
+        "Scenario(\n    name: \"radio\",\n    time_limit: 10.0,\n    swarm: (robots: 5, deploy: Uniform),\n    radio: Shared({radio}),\n    {rest}\n)"
     );
     let report = parse("radio.ron", &text, &[]).expect_err(radio);
-    report.to_string()
+    // Messages are wrapped.
+    let report = report.to_string().replace('│', " ");
+    report.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[test]
