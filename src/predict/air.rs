@@ -5,6 +5,7 @@ use super::scene::Scene;
 use super::{Holds, Prediction, Preflight};
 use super::{swarm, traffic};
 use crate::kind::Broadcasts;
+use crate::quantity::Positive;
 use crate::radio::propagation::FadingConfig;
 use crate::radio::shared::{Form, Stream};
 use crate::radio::{SharedConfig, WallsConfig};
@@ -151,6 +152,26 @@ fn met(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, prefligh
         ),
     }
     match radio.mean_watts(stream, broadcasts.sending) {
+        Some(watts)
+            if radio
+                .battery
+                .is_some_and(|joules| joules.get() < watts.value * scene.duration_s) =>
+        {
+            let joules = radio.battery.map_or(0.0, Positive::get);
+            let lifetime = Form {
+                value: joules / watts.value,
+                accuracy: joules / watts.value * watts.accuracy / watts.value,
+                formula: "battery over mean power",
+            };
+            let assumes = "until the first batteries are empty: who fails neither sends nor is heard";
+            let lifetime = prediction("lifetime_s", "life of a battery", "s", lifetime, assumes);
+            preflight.predictions.push(lifetime);
+            preflight.refuse(
+                "radio.energy_J",
+                ENERGY,
+                "batteries are empty before the end, and robots fail",
+            );
+        }
         Some(watts) => {
             let energy = Form {
                 value: watts.value * scene.duration_s,

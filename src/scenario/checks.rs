@@ -80,9 +80,10 @@ fn sections(scenario: &Scenario, radio: Vec<(String, String)>) -> Vec<Problem> {
     } = scenario;
     let deploy = swarm.deploy.problems(swarm.robots, arena, motion.body_radius.get());
     // What fits a frame is asked of a radio that holds.
-    let protocol = match radio.is_empty() {
-        true => scenario.protocol.problems(&scenario.sections()),
-        false => Vec::new(),
+    let protocol = if radio.is_empty() {
+        scenario.protocol.problems(&scenario.sections())
+    } else {
+        Vec::new()
     };
     let faults = faults::problems(&scenario.faults, swarm.robots, scenario.protocol.roles());
     let around = ["swarm.robots", "arena.size", "motion.body_radius"];

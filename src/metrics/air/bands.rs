@@ -31,7 +31,7 @@ impl Bands {
     /// The band of a distance, metres.
     pub fn of(&self, distance: f32) -> usize {
         // What is at least 2^e is beyond the end at 2^e and those before, and below the end at twice that.
-        let e = (distance.to_bits() >> (f32::MANTISSA_DIGITS - 1)) as i32 - (f32::MAX_EXP - 1);
+        let e = (distance.to_bits() >> (f32::MANTISSA_DIGITS - 1)).cast_signed() - (f32::MAX_EXP - 1);
         let before = e * PER_DOUBLING - FIRST + 1;
         let Ok(before) = usize::try_from(before) else {
             return 0;

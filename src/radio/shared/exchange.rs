@@ -197,9 +197,12 @@ impl Shared {
         let mut arrived = head.arrived;
         let waveform = self.receiver.waveform(burst);
         if self.prefetches {
-            open.iter().for_each(|open| prefetch(&self.ears[open.receiver.index()]));
-            open.iter()
-                .for_each(|open| self.ears[open.receiver.index()].prefetch_contents());
+            for open in &open {
+                prefetch(&self.ears[open.receiver.index()]);
+            }
+            for open in &open {
+                self.ears[open.receiver.index()].prefetch_contents();
+            }
         }
         open.retain_mut(|open| {
             let receiver = open.receiver;

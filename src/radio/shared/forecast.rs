@@ -6,6 +6,7 @@ use super::access::AccessConfig;
 use super::config::SharedConfig;
 use super::energy::watts;
 use crate::engine::Span;
+use crate::quantity::NonNegative;
 
 /// Frames of one length for everybody that each of some robots puts on air, all of them in range of each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +92,7 @@ impl SharedConfig {
                 form(value, 0.0, "((1 − λT) e^(−λT))^(n−1)")
             }
             AccessConfig::Tdma { slot, guard, .. } => {
-                let fits = slot.get() - guard.map_or(0.0, |guard| guard.get()) >= airtime;
+                let fits = slot.get() - guard.map_or(0.0, NonNegative::get) >= airtime;
                 fits.then_some(())?;
                 form(1.0, 0.0, "one robot a slot")
             }
@@ -140,7 +141,7 @@ impl SharedConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quantity::{NonNegative, Positive};
+    use crate::quantity::Positive;
     use crate::radio::TechnologyConfig;
     use crate::radio::shared::CsmaCaConfig;
 

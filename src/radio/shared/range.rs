@@ -27,7 +27,7 @@ static KNOWN: Memo<(Phy, FadingConfig, u32), Levels> = Memo::new();
 
 /// The levels of a lone frame with so much payload. Where there is no noise a frame comes through at the sensitivity or above.
 pub(super) fn levels(phy: &Phy, fading: &FadingConfig, payload: u32) -> Levels {
-    KNOWN.get((phy.clone(), fading.clone(), payload), |(phy, fading, payload)| {
+    KNOWN.get((phy.clone(), *fading, payload), |(phy, fading, payload)| {
         let gains = fading.gains();
         let level = |probability| level_dbm(phy, &gains, *payload, probability);
         Levels {

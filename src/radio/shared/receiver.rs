@@ -352,8 +352,8 @@ mod tests {
             let error = (dbm(power) - 10.0 * libm::log10(power)).abs();
             assert!(error < 1e-8, "{power}: {error}");
         }
-        assert_eq!(dbm(0.0), f64::NEG_INFINITY);
-        assert_eq!(dbm(f64::INFINITY), f64::INFINITY);
+        assert!(dbm(0.0) < 0.0 && dbm(0.0).is_infinite());
+        assert!(dbm(f64::INFINITY).is_infinite());
         assert!((dbm(1e-310) - 10.0 * libm::log10(1e-310)).abs() < 1e-8);
     }
 }

@@ -98,3 +98,25 @@ fn where_no_form_holds_the_reason_is_said() {
     );
     assert!(refused(&wide, "overlap_ratio").contains("hear each other"));
 }
+
+/// Radios that draw so many watts empty their batteries when they have drawn what these hold: all within a few frames of each other.
+#[test]
+fn the_life_of_a_battery_is_as_predicted() {
+    let scenario = cell(10, "when: Poisson(10.0), payload: 20", "access: CsmaCa(), battery: 1.0");
+    let expected = Preflight::of(&scenario);
+    let lifetime = expected.get("lifetime_s").expect("a form holds");
+    for record in runs(&scenario, 3) {
+        let air = record.air.as_ref().expect("a shared radio");
+        let first = air
+            .robots
+            .iter()
+            .filter_map(|robot| robot.empty_at)
+            .min()
+            .expect("empty before the end");
+        let off = first.as_secs() - lifetime.value;
+        assert!(
+            off.abs() < lifetime.accuracy + 0.01 * lifetime.value,
+            "{first}, {lifetime:?}"
+        );
+    }
+}
