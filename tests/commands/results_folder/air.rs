@@ -119,7 +119,7 @@ fn every_figure_of_the_radio_stands_in_the_summary_at_the_place_that_its_key_say
         assert!(readme.contains(&format!("`{name}`")), "{key} is not documented");
         found += 1;
     }
-    assert_eq!(found, 11);
+    assert_eq!(found, 12);
 }
 
 #[test]
