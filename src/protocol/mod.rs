@@ -86,7 +86,7 @@ pub trait Protocol: Sized + 'static {
         let _ = start;
     }
 
-    /// Asks for the memory that the next step will read beside `self` ([`Process::prefetch`]).
+    /// Asks for the memory that the next step will read beside `self` ([`Process::prefetch`](crate::engine::Process::prefetch)).
     fn prefetch(&self) {}
 
     /// Takes one step: reads `input`, fills `output`, which is empty. Called at each wake, of which [`Input::wake`] says why; the
