@@ -102,8 +102,6 @@ pub struct Frame<M> {
     pub rides: bool,
     /// Whom it is for.
     pub address: Address,
-    /// Whether its receiver counted as out of range, and got it all the same. Metrics count that apart; a robot cannot know.
-    pub beyond: bool,
     /// What its payload says.
     pub message: M,
 }

@@ -138,7 +138,6 @@ mod tests {
                     payload_bytes: 1,
                     rides: false,
                     address: Address::Everyone,
-                    beyond: false,
                     message: 7,
                 },
                 displacement: [0.0; 2],

@@ -126,7 +126,6 @@ mod tests {
                 payload_bytes: 4,
                 rides: false,
                 address: Address::Everyone,
-                beyond: false,
                 message: (),
             },
             displacement: [0.0; 2],

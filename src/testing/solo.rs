@@ -163,7 +163,6 @@ impl<P: Protocol> Solo<P> {
                 payload_bytes: 0,
                 rides: false,
                 address,
-                beyond: false,
                 message,
             },
             displacement: [displacement.x as f32, displacement.y as f32],

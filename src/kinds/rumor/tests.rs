@@ -42,7 +42,6 @@ fn step(robot: &mut Rumor, step: u64, heard: &[(u32, Message)]) -> Output<Messag
             payload_bytes: 36,
             rides: false,
             address: Address::Everyone,
-            beyond: false,
             message,
         },
         displacement: [0.0; 2],

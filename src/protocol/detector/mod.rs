@@ -261,7 +261,6 @@ mod tests {
                 payload_bytes: 4,
                 rides: false,
                 address: Address::Everyone,
-                beyond: false,
                 message: Alive,
             },
             displacement: [0.0; 2],

@@ -58,7 +58,6 @@ impl<P: Protocol> Air<P> {
             payload_bytes: size.payload_bytes,
             rides: size.rides,
             address: Address::Everyone,
-            beyond: false,
             message: message.into(),
         };
         Ok(Spoken { frame, to })

@@ -81,7 +81,7 @@ impl<P: Protocol> Air<P> {
             self.powers.resize_with(self.inboxes.len(), Vec::new);
         }
         for reading in self.fates.readings.drain(..) {
-            if !self.is_beyond[reading.receiver.index()] {
+            if !self.strays.has(reading.receiver, frame.sender, frame.first()) {
                 observer.measured(now, frame, &reading);
             }
             if reading.received {
@@ -95,11 +95,13 @@ impl<P: Protocol> Air<P> {
         if self.prefetches {
             self.prefetch_decided();
         }
+        if !self.fates.readings.is_empty() {
+            self.tell_readings(now, frame, observer);
+        }
         for (receiver, cause) in self.fates.losses.drain(..) {
-            let mut is_beyond = false;
+            let strays = self.strays.remove(receiver, frame);
             let lost = self.inboxes[receiver.index()].lose(frame, |reception| {
-                is_beyond |= reception.frame.beyond;
-                if !is_beyond {
+                if !strays {
                     observer.lost(&copy_of::<P>(&reception.frame, receiver), cause, now);
                 }
             });
@@ -107,10 +109,6 @@ impl<P: Protocol> Air<P> {
                 lost,
                 "the radio loses a copy of {frame:?} at robot {receiver}, where none is open"
             );
-            if is_beyond {
-                self.is_beyond[receiver.index()] = true;
-                self.strays.push(receiver);
-            }
         }
         for arrival in self.fates.arrivals.drain(..) {
             let Arrival {
@@ -119,10 +117,9 @@ impl<P: Protocol> Air<P> {
                 displacement,
             } = arrival;
             assert!(at >= now, "the radio decides at {now} what has arrived at {at}");
-            let mut is_beyond = false;
+            let strays = self.strays.has(receiver, frame.sender, frame.first());
             let arrives = self.inboxes[receiver.index()].arrive(frame, at, displacement, |frame| {
-                is_beyond |= frame.beyond;
-                if !is_beyond {
+                if !strays {
                     observer.arrives(&copy_of::<P>(frame, receiver), at);
                 }
             });
@@ -130,21 +127,11 @@ impl<P: Protocol> Air<P> {
                 arrives,
                 "the radio delivers a copy of {frame:?} to robot {receiver}, for whom none is open"
             );
-            if is_beyond {
-                self.is_beyond[receiver.index()] = true;
-                self.strays.push(receiver);
-            }
             if self.tell_reached {
                 self.reached.push(receiver);
             }
         }
         self.fates.open.clear();
-        if !self.fates.readings.is_empty() {
-            self.tell_readings(now, frame, observer);
-        }
-        for robot in self.strays.drain(..) {
-            self.is_beyond[robot.index()] = false;
-        }
     }
 
     /// Asks for the inboxes in which decided copies wait.
@@ -196,12 +183,19 @@ impl<P: Protocol> Air<P> {
         }
         let since = self.deaf_since[receiver.index()];
         if since < until {
+            let mut gone = Vec::new();
             self.inboxes[receiver.index()].drop_arrivals(since, until, |reception| {
-                if !reception.frame.beyond {
+                let Frame { sender, sequence, .. } = reception.frame;
+                if self.strays.has(receiver, sender, sequence) {
+                    gone.push((sender, sequence));
+                } else {
                     let copy = copy_of::<P>(&reception.frame, receiver);
                     observer.lost(&copy, LossCause::ReceiverDown, reception.at);
                 }
             });
+            for (sender, sequence) in gone {
+                self.strays.forget(receiver, sender, sequence);
+            }
         }
     }
 
@@ -216,13 +210,12 @@ impl<P: Protocol> Air<P> {
     ) {
         self.lose_unheard(now + INSTANT, receiver, observer);
         self.inboxes[receiver.index()].take_arrived(now, arrived);
-        for reception in arrived.iter() {
-            let copy = copy_of::<P>(&reception.frame, receiver);
-            if reception.frame.beyond {
-                observer.strayed(&copy, reception.at, Some(now));
-            } else {
-                observer.delivered(&copy, reception.at, Some(now));
+        if self.strays.of(receiver).is_empty() {
+            for reception in arrived.iter() {
+                observer.delivered(&copy_of::<P>(&reception.frame, receiver), reception.at, Some(now));
             }
+        } else {
+            self.tell_read(now, receiver, arrived, observer);
         }
         if let Some(known) = self.powers.get_mut(receiver.index()) {
             let mut next = 0;
@@ -237,6 +230,29 @@ impl<P: Protocol> Air<P> {
                 next = place.unwrap_or(next);
             }
             known.clear();
+        }
+    }
+
+    /// Tells what `receiver` reads, where some of it is from out of range.
+    #[inline(never)]
+    fn tell_read(
+        &mut self,
+        now: SimTime,
+        receiver: ActorId,
+        arrived: &[Reception<P::Heard>],
+        observer: &mut impl Observer,
+    ) {
+        for reception in arrived {
+            let copy = copy_of::<P>(&reception.frame, receiver);
+            if self.strays.has(receiver, copy.sender, copy.sequence) {
+                observer.strayed(&copy, reception.at, Some(now));
+            } else {
+                observer.delivered(&copy, reception.at, Some(now));
+            }
+        }
+        for reception in arrived {
+            let Frame { sender, sequence, .. } = reception.frame;
+            self.strays.forget(receiver, sender, sequence);
         }
     }
 
@@ -269,7 +285,7 @@ impl<P: Protocol> Air<P> {
         for (receiver, inbox) in (0..).map(ActorId).zip(&self.inboxes) {
             for reception in inbox.waiting() {
                 let copy = copy_of::<P>(&reception.frame, receiver);
-                if reception.frame.beyond {
+                if self.strays.has(receiver, copy.sender, copy.sequence) {
                     if reception.at <= end {
                         observer.strayed(&copy, reception.at, None);
                     }

@@ -20,9 +20,11 @@ use crate::radio::{Fates, FrameId, Listener, Medium, Reach};
 mod audience;
 mod encode;
 mod hearing;
+mod strays;
 mod transmit;
 
 use audience::Audiences;
+use strays::Strays;
 
 /// A message of the present frame, and the robot that it is for if it is for one.
 struct Spoken<M> {
@@ -67,11 +69,11 @@ pub struct Air<P: Protocol> {
     listeners: Vec<Listener>,
     /// Who heard robots that have not moved since, where that is more than a question of distance.
     audiences: Audiences,
-    /// Who may hear the present sender though it counts as out of range: no copy is offered to it, and what reaches it is counted apart. Looked up by number
-    /// while a frame is handed over, or decided: `strays` are those of it then.
+    /// Who may hear the present sender though it counts as out of range: no copy is offered to it, and what reaches it is counted apart.
     beyond: Vec<Listener>,
+    /// Who of all robots that is, while a frame is handed over.
     is_beyond: Vec<bool>,
-    strays: Vec<ActorId>,
+    strays: Strays,
     /// While a frame for some of them is under way, all of them; else a buffer.
     all_listeners: Vec<Listener>,
     all_hindrances: Vec<f64>,
@@ -123,7 +125,7 @@ impl<P: Protocol> Air<P> {
             audiences: Audiences::default(),
             beyond: Vec::new(),
             is_beyond: vec![false; robots],
-            strays: Vec::new(),
+            strays: Strays::default(),
             all_listeners: Vec::new(),
             all_hindrances: Vec::new(),
             aboard: Vec::new(),

@@ -201,9 +201,10 @@ impl<P: Protocol> Air<P> {
         let to = aboard[0]
             .to
             .filter(|to| aboard.iter().all(|spoken| spoken.to == Some(*to)));
+        let id = FrameId::with_messages(sender, number, sequence, aboard.len() as u32);
         let frame = Transmission {
             at: now,
-            frame: FrameId::with_messages(sender, number, sequence, aboard.len() as u32),
+            frame: id,
             bytes: self.bytes(aboard),
             to,
             position: self.position,
@@ -218,8 +219,9 @@ impl<P: Protocol> Air<P> {
         if self.prefetches {
             self.prefetch_fates(P::topic(aboard[0].frame.message.borrow()), observer);
         }
+        let beyond = self.listeners.len() > in_range;
         for (receiver, cause) in self.fates.losses.drain(..) {
-            if self.is_beyond[receiver.index()] {
+            if beyond && self.is_beyond[receiver.index()] {
                 continue;
             }
             for at_receiver in copies_for::<P, ADDRESSED>(receiver, true, aboard) {
@@ -227,16 +229,21 @@ impl<P: Protocol> Air<P> {
             }
         }
         for arrival in self.fates.arrivals.drain(..) {
-            debug_assert!(
-                !self.is_beyond[arrival.receiver.index()],
-                "a medium with links decides later"
-            );
+            let strays = beyond && self.is_beyond[arrival.receiver.index()];
+            if strays {
+                self.strays.add(arrival.receiver, id, self.inboxes.len());
+            }
             if self.tell_reached {
                 self.reached.push(arrival.receiver);
             }
             let inbox = &mut self.inboxes[arrival.receiver.index()];
             for at_receiver in copies_for::<P, ADDRESSED>(arrival.receiver, true, aboard) {
-                observer.arrives(&at_receiver.copy(arrival.receiver), arrival.at);
+                if strays && at_receiver.address == Address::Me {
+                    continue;
+                }
+                if !strays {
+                    observer.arrives(&at_receiver.copy(arrival.receiver), arrival.at);
+                }
                 inbox.push(Reception {
                     at: arrival.at,
                     frame: at_receiver.into_frame(),
@@ -245,9 +252,9 @@ impl<P: Protocol> Air<P> {
             }
         }
         if !self.fates.open.is_empty() {
-            self.await_fates::<ADDRESSED>(aboard);
+            self.await_fates::<ADDRESSED>(id, aboard, beyond);
         }
-        if self.listeners.len() > in_range {
+        if beyond {
             self.leave_out_beyond(in_range);
         }
         if !self.fates.conclusions.is_empty() {
@@ -265,7 +272,7 @@ impl<P: Protocol> Air<P> {
 
     /// Puts copies whose fates are open into the inboxes, where they wait for them.
     #[inline(never)]
-    fn await_fates<const ADDRESSED: bool>(&mut self, aboard: &[Spoken<P::Heard>]) {
+    fn await_fates<const ADDRESSED: bool>(&mut self, id: FrameId, aboard: &[Spoken<P::Heard>], beyond: bool) {
         if self.prefetches {
             self.fates
                 .open
@@ -276,19 +283,21 @@ impl<P: Protocol> Air<P> {
                 .iter()
                 .for_each(|receiver| self.inboxes[receiver.index()].prefetch_end());
         }
+        let robots = self.inboxes.len();
         for receiver in self.fates.open.drain(..) {
             let inbox = &mut self.inboxes[receiver.index()];
-            let beyond = self.is_beyond[receiver.index()];
+            let strays = beyond && self.is_beyond[receiver.index()];
+            if strays {
+                self.strays.add(receiver, id, robots);
+            }
             for at_receiver in copies_for::<P, ADDRESSED>(receiver, true, aboard) {
                 // What is for a robot out of range and goes to everybody's ears was given up before.
-                if beyond && ADDRESSED && at_receiver.address == Address::Me {
+                if strays && at_receiver.address == Address::Me {
                     continue;
                 }
-                let mut frame = at_receiver.into_frame();
-                frame.beyond = beyond;
                 inbox.push(Reception {
                     at: SimTime::NEVER,
-                    frame,
+                    frame: at_receiver.into_frame(),
                     displacement: [0.0; 2],
                 });
             }

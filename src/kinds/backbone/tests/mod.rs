@@ -79,7 +79,6 @@ impl Bench {
                 payload_bytes: 4,
                 rides: false,
                 address: Address::Everyone,
-                beyond: false,
                 message: Rc::new(message.clone()),
             },
             displacement: [(x - self.x) as f32, -self.y as f32],

@@ -34,7 +34,6 @@ fn status(number: u32) -> Reception<()> {
             payload_bytes: 4,
             rides: false,
             address: Address::Everyone,
-            beyond: false,
             message: (),
         },
         displacement: [0.0; 2],

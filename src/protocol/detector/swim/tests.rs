@@ -100,7 +100,6 @@ impl Bench {
                 payload_bytes: 4,
                 rides: false,
                 address: Address::Everyone,
-                beyond: false,
                 message,
             },
             displacement: [0.0; 2],
