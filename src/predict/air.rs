@@ -10,6 +10,7 @@ use crate::radio::propagation::FadingConfig;
 use crate::radio::shared::{Form, Stream};
 use crate::radio::{SharedConfig, WallsConfig};
 
+const SHARE: &str = "time that a robot sends";
 const OVERLAPS: &str = "frames on air with others";
 const ENERGY: &str = "energy of a radio";
 
@@ -52,80 +53,16 @@ fn is_even(scene: &Scene<'_>, radio: &SharedConfig) -> bool {
 fn stream(scene: &Scene<'_>, broadcasts: Broadcasts, senders: f64) -> Stream {
     let [_, header] = scene.scenario.header_bytes();
     Stream {
+        robots: scene.scenario.swarm.robots,
         senders,
         per_second: broadcasts.per_second,
         payload: broadcasts.payload as u32 + u32::from(header),
     }
 }
 
-/// What follows from what is sent alone.
-fn sent(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, preflight: &mut Preflight) {
-    let stream = stream(scene, broadcasts, 1.0);
-    let airtime = radio.airtime_s(stream.payload);
-    let mut push = |name, what, unit, form: Form, assumes: &str| {
-        preflight.predictions.push(Prediction {
-            name,
-            what,
-            value: form.value,
-            unit,
-            accuracy: form.accuracy,
-            holds: Holds::Throughout,
-            formula: form.formula,
-            assumes: assumes.into(),
-        });
-    };
-    let exact = |value, formula| Form {
-        value,
-        accuracy: 0.0,
-        formula,
-    };
-    let form = exact(airtime, "the technology's layout of a frame");
-    push(
-        "airtime_s",
-        "airtime of a frame",
-        "s",
-        form,
-        "on all its channels together",
-    );
-    let capacity = radio.capacity(stream);
-    push(
-        "capacity_robots",
-        "senders that fill the channel",
-        "robots",
-        capacity,
-        "in range of each other; what is lost to overlaps makes it fewer by far",
-    );
-    let share = broadcasts.sending * broadcasts.per_second * airtime;
-    if broadcasts.per_second * airtime < 1.0 {
-        let form = Form {
-            // A trial has a frame of each robot more than whole intervals, or less.
-            accuracy: airtime / scene.duration_s,
-            ..exact(share, "λT")
-        };
-        let assumes = "of a robot, none of which fails; frames that are never sent make it less";
-        push("radio.airtime_share", "time that a robot sends", "1", form, assumes);
-    }
-}
-
-/// What follows where all robots hear each other, and each frame has its instant to itself or not by chance.
-fn met(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, preflight: &mut Preflight) {
-    let others = f64::from(scene.scenario.swarm.robots) - 1.0;
-    let hears = preflight.get("degree").map_or(0.0, |degree| degree.value);
-    let why = if radio.fading != FadingConfig::None || hears < others * (1.0 - 1e-9) {
-        Some("not all robots hear each other all the time: who is hidden from whom decides")
-    } else if !scene.stands_still() {
-        Some("robots move, and need not stay in range of each other")
-    } else if !broadcasts.scattered {
-        Some("all robots send at once: what becomes of that is decided by medium access alone")
-    } else {
-        None
-    };
-    if let Some(why) = why {
-        preflight.refuse("overlap_ratio", OVERLAPS, why);
-        return preflight.refuse("radio.energy_J", ENERGY, why);
-    }
-    let stream = stream(scene, broadcasts, broadcasts.sending * (others + 1.0));
-    let prediction = |name, what, unit, form: Form, assumes: &str| Prediction {
+/// A closed form as a prediction.
+fn prediction(name: &'static str, what: &'static str, unit: &'static str, form: Form, assumes: &str) -> Prediction {
+    Prediction {
         name,
         what,
         value: form.value,
@@ -134,59 +71,116 @@ fn met(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, prefligh
         holds: Holds::Throughout,
         formula: form.formula,
         assumes: assumes.into(),
+    }
+}
+
+/// What follows from what is sent alone.
+fn sent(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, preflight: &mut Preflight) {
+    if !radio.takes_time() {
+        let why = "over this radio frames take no time";
+        return preflight.refuse("radio.airtime_share", SHARE, why);
+    }
+    let others = f64::from(scene.scenario.swarm.robots) - 1.0;
+    let neighbours = preflight.get("degree").map_or(others, |degree| degree.value);
+    let stream = stream(scene, broadcasts, broadcasts.sending * (neighbours + 1.0));
+    let airtime = radio.airtime_s(stream.payload);
+    let exact = |value, formula| Form {
+        value,
+        accuracy: 0.0,
+        formula,
     };
-    match radio.clean(stream) {
-        Some(clean) => {
-            let overlap = Form {
-                value: 1.0 - clean.value,
-                ..clean
-            };
-            let assumes = "one less the form; with `capture: inf` that is what is lost, with capture less";
-            let overlap = prediction("overlap_ratio", OVERLAPS, "1", overlap, assumes);
-            preflight.predictions.push(overlap);
-        }
-        None => preflight.refuse(
-            "overlap_ratio",
-            OVERLAPS,
-            "no closed form holds for this medium access at this load",
-        ),
+    preflight.predictions.push(prediction(
+        "airtime_s",
+        "airtime of a frame",
+        "s",
+        exact(airtime, "the technology's layout of a frame"),
+        "on all its channels together",
+    ));
+    preflight.predictions.push(prediction(
+        "capacity_robots",
+        "senders that fill the channel",
+        "robots",
+        radio.capacity(stream),
+        "in range of each other; what is lost to overlaps makes it fewer by far",
+    ));
+    if !radio.sustains(stream) {
+        let why = "robots have more to send than medium access lets out, or so much that frames wait and are given up";
+        return preflight.refuse("radio.airtime_share", SHARE, why);
     }
-    match radio.mean_watts(stream, broadcasts.sending) {
-        Some(watts)
-            if radio
-                .battery
-                .is_some_and(|joules| joules.get() < watts.value * scene.duration_s) =>
-        {
-            let joules = radio.battery.map_or(0.0, Positive::get);
-            let lifetime = Form {
-                value: joules / watts.value,
-                accuracy: joules / watts.value * watts.accuracy / watts.value,
-                formula: "battery over mean power",
-            };
-            let assumes = "until the first batteries are empty: who fails neither sends nor is heard";
-            let lifetime = prediction("lifetime_s", "life of a battery", "s", lifetime, assumes);
-            preflight.predictions.push(lifetime);
-            preflight.refuse(
-                "radio.energy_J",
-                ENERGY,
-                "batteries are empty before the end, and robots fail",
-            );
-        }
-        Some(watts) => {
-            let energy = Form {
-                value: watts.value * scene.duration_s,
-                accuracy: watts.accuracy * scene.duration_s + watts.value * radio.airtime_s(stream.payload),
-                ..watts
-            };
-            let assumes = "of a robot; P of listening, sending, turning round and receiving, times the trial's length";
-            preflight
-                .predictions
-                .push(prediction("radio.energy_J", ENERGY, "J", energy, assumes));
-        }
-        None => preflight.refuse(
-            "radio.energy_J",
-            ENERGY,
-            "the channel is so full that frames wait, or the technology says nothing of what it draws",
-        ),
+    let share = Form {
+        // A trial has a frame of each robot more than whole intervals, or less.
+        accuracy: airtime / scene.duration_s,
+        ..exact(broadcasts.sending * broadcasts.per_second * airtime, "λT")
+    };
+    let assumes = "of a robot, none of which fails; frames that are never sent make it less";
+    let share = prediction("radio.airtime_share", SHARE, "1", share, assumes);
+    preflight.predictions.push(share);
+}
+
+/// Why chance alone does not decide who sends at the same time, if it does not.
+fn unmet(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts) -> Option<&'static str> {
+    let others = f64::from(scene.scenario.swarm.robots) - 1.0;
+    let clear = || {
+        let spacing = scene.spacing.as_ref();
+        spacing.map_or(0.0, |spacing| spacing.neighbours(radio.clear_range()))
+    };
+    if radio.phy().infrared.is_some() {
+        return Some("who is in the way of whose light decides");
     }
+    if !is_even(scene, radio) || radio.fading != FadingConfig::None || clear() < others * (1.0 - 1e-9) {
+        return Some("not all robots hear each other all the time: who is hidden from whom decides");
+    }
+    if !scene.stands_still() {
+        return Some("robots move, and need not stay in range of each other");
+    }
+    let why = "all robots send at once: what becomes of that is decided by medium access alone";
+    (!broadcasts.scattered).then_some(why)
+}
+
+/// What follows where all robots hear each other, and each frame has its instant to itself or not by chance.
+fn met(scene: &Scene<'_>, radio: &SharedConfig, broadcasts: Broadcasts, preflight: &mut Preflight) {
+    if let Some(why) = unmet(scene, radio, broadcasts) {
+        preflight.refuse("overlap_ratio", OVERLAPS, why);
+        return preflight.refuse("radio.energy_J", ENERGY, why);
+    }
+    let robots = f64::from(scene.scenario.swarm.robots);
+    let stream = stream(scene, broadcasts, broadcasts.sending * robots);
+    if let Some(clean) = radio.clean(stream, scene.scenario.control.drift()) {
+        let overlap = Form {
+            value: 1.0 - clean.value,
+            ..clean
+        };
+        let assumes = "one less the form; with `capture: inf` that is what is lost, with capture less";
+        let overlap = prediction("overlap_ratio", OVERLAPS, "1", overlap, assumes);
+        preflight.predictions.push(overlap);
+    } else {
+        let why = "no closed form holds for this medium access at this load";
+        preflight.refuse("overlap_ratio", OVERLAPS, why);
+    }
+    let Some(watts) = radio.mean_watts(stream, broadcasts.sending) else {
+        let why = "the channel is so full that frames wait, or the technology says nothing of what it draws";
+        return preflight.refuse("radio.energy_J", ENERGY, why);
+    };
+    let joules = watts.value * scene.duration_s;
+    let battery = radio.battery.map_or(f64::INFINITY, Positive::get);
+    if battery < joules {
+        let lifetime = Form {
+            value: battery / watts.value,
+            accuracy: battery / watts.value * watts.accuracy / watts.value,
+            formula: "battery over mean power",
+        };
+        let assumes = "until the first batteries are empty: who fails neither sends nor is heard";
+        let lifetime = prediction("lifetime_s", "life of a battery", "s", lifetime, assumes);
+        preflight.predictions.push(lifetime);
+        let why = "batteries are empty before the end, and robots fail";
+        return preflight.refuse("radio.energy_J", ENERGY, why);
+    }
+    let energy = Form {
+        value: joules,
+        accuracy: watts.accuracy * scene.duration_s + watts.value * radio.airtime_s(stream.payload),
+        ..watts
+    };
+    let assumes = "of a robot; P of listening, sending, turning round and receiving, times the trial's length";
+    let energy = prediction("radio.energy_J", ENERGY, "J", energy, assumes);
+    preflight.predictions.push(energy);
 }

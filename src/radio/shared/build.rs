@@ -1,5 +1,6 @@
 //! From what a scenario says about the shared radio to the radio itself.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use rand_distr::{Distribution, Normal};
@@ -26,6 +27,9 @@ use crate::radio::{Links, Obstacle, RadioSite};
 
 /// Where in its round of channels each receiver begins.
 const SCANS: Purpose = Purpose::new("radio.scans");
+
+/// Ranges that closed forms are asked about, metres.
+pub(super) const RANGES: RangeInclusive<f64> = 1e-3..=1e6;
 
 const POWERS: Purpose = Purpose::new("radio.powers");
 
@@ -117,7 +121,7 @@ impl SharedConfig {
         let access = self.access().scheme(&self.technology, &phy, 1, 0.0).least_delay();
         let latency = access + phy.airtime(self.range_payload.into());
         DiskConfig {
-            range: Positive::new(range.clamp(1e-3, 1e6)),
+            range: Positive::new(range.clamp(*RANGES.start(), *RANGES.end())),
             loss: LossConfig::None,
             latency: LatencyConfig::Constant(NonNegative::new(latency.as_secs())),
             frame_header_bytes: phy.header_bytes as u16,

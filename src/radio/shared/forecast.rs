@@ -3,14 +3,18 @@
 use libm::exp;
 
 use super::access::AccessConfig;
+use super::build::RANGES;
 use super::config::SharedConfig;
 use super::energy::watts;
-use crate::engine::Span;
-use crate::quantity::NonNegative;
+use crate::engine::{Span, Streams};
+use crate::quantity::{NonNegative, Positive};
+use crate::radio::RadioSite;
 
 /// Frames of one length for everybody that each of some robots puts on air, all of them in range of each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stream {
+    /// How many robots there are.
+    pub robots: u32,
     /// How many robots send.
     pub senders: f64,
     /// Frames a second of each.
@@ -68,15 +72,47 @@ impl SharedConfig {
         }
     }
 
-    /// The probability that a frame is on air together with none of the other senders' of `stream`: that it arrives, where whatever overlaps is lost and nothing else
-    /// is. `None` where no closed form holds: on several channels, with queues that fill, with access that has none.
+    /// Whether medium access lets each robot send as often as it has something to: nothing piles up, next to nothing is given up.
     #[must_use]
-    pub fn clean(&self, stream: Stream) -> Option<Form> {
+    pub fn sustains(&self, stream: Stream) -> bool {
+        let (rate, airtime) = (stream.per_second, self.airtime_s(stream.payload));
+        match self.access() {
+            AccessConfig::None | AccessConfig::Aloha { duty_cycle: None } => rate * airtime < 1.0,
+            AccessConfig::Aloha {
+                duty_cycle: Some(share),
+            } => rate * airtime < share.get(),
+            AccessConfig::SlottedAloha { slot, probability } => rate * slot.get() < probability.get(),
+            AccessConfig::Tdma { slot, slots, frame, .. } => {
+                let all = slot.get() * f64::from(slots.unwrap_or(stream.robots));
+                rate * frame.map_or(all, Positive::get) < 1.0
+            }
+            AccessConfig::CsmaCa(_) | AccessConfig::Dcf(_) => stream.senders * rate * airtime <= LIGHT,
+            AccessConfig::Paced(pace) => rate * (pace.interval.get() + pace.jitter.get() + airtime) < 1.0,
+        }
+    }
+
+    /// How far apart two robots may be that hear each other's every frame while nothing else is on air, and before they send where they listen first, metres.
+    #[must_use]
+    pub fn clear_range(&self) -> f64 {
+        let phy = self.phy();
+        let listens = matches!(self.access(), AccessConfig::CsmaCa(_) | AccessConfig::Dcf(_));
+        let carrier = phy.carrier.or(phy.assess).filter(|_| listens);
+        let level = carrier.unwrap_or(phy.sensitivity).max(phy.sensitivity);
+        let site = RadioSite::open(Streams::new(0, 0), 1);
+        self.budget(&phy, &site)
+            .distance_at(level)
+            .clamp(*RANGES.start(), *RANGES.end())
+    }
+
+    /// The probability that a frame is on air together with none of the other senders' of `stream`: that it arrives, where whatever overlaps is lost and nothing else
+    /// is. Clocks are fast or slow by up to a share of `drift`. `None` where no closed form holds: on several channels, with queues that fill, with access that has none.
+    #[must_use]
+    pub fn clean(&self, stream: Stream, drift: f64) -> Option<Form> {
         let phy = self.phy();
         let [airtime, others] = [self.airtime_s(stream.payload), stream.senders - 1.0];
         let own = stream.per_second * airtime;
         let load = stream.senders * own;
-        if phy.channels > 1 || others < 0.0 || own >= 1.0 {
+        if phy.channels > 1 || others < 0.0 || !self.sustains(stream) {
             return None;
         }
         let form = |value, accuracy, formula| {
@@ -91,12 +127,21 @@ impl SharedConfig {
                 let value = libm::pow((1.0 - own) * exp(-own), others);
                 form(value, 0.0, "((1 − λT) e^(−λT))^(n−1)")
             }
-            AccessConfig::Tdma { slot, guard, .. } => {
-                let fits = slot.get() - guard.map_or(0.0, NonNegative::get) >= airtime;
-                fits.then_some(())?;
+            AccessConfig::Tdma {
+                slot,
+                slots,
+                guard,
+                resync,
+                ..
+            } => {
+                let needed = 2.0 * drift * resync.get();
+                let guard = guard.map_or(needed, NonNegative::get);
+                let own_slot = slots.is_none_or(|slots| slots >= stream.robots);
+                let fits = guard >= needed && slot.get() - guard >= airtime;
+                (own_slot && fits).then_some(())?;
                 form(1.0, 0.0, "one robot a slot")
             }
-            AccessConfig::CsmaCa(config) if load <= LIGHT => {
+            AccessConfig::CsmaCa(config) => {
                 // From its assessment to its frame each is deaf to another's beginning.
                 let window = 2.0 * config.turnaround.get();
                 let value = exp(-others * stream.per_second * window);
@@ -115,7 +160,7 @@ impl SharedConfig {
         let [send, receive, listen, turning] = watts(&phy.supply);
         let airtime = self.airtime_s(stream.payload);
         let load = stream.senders * stream.per_second * airtime;
-        if send + listen <= 0.0 || load > LIGHT {
+        if send + listen <= 0.0 || load > LIGHT || !self.sustains(stream) {
             return None;
         }
         let turnaround = self.access().scheme(&self.technology, &phy, 1, 0.0).turnaround();
@@ -141,12 +186,12 @@ impl SharedConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quantity::Positive;
     use crate::radio::TechnologyConfig;
     use crate::radio::shared::CsmaCaConfig;
 
     fn stream(senders: f64, per_second: f64) -> Stream {
         Stream {
+            robots: senders as u32,
             senders,
             per_second,
             payload: 20,
@@ -165,7 +210,7 @@ mod tests {
         let radio = over(AccessConfig::Aloha { duty_cycle: None });
         assert!((radio.airtime_s(20) - 1.184e-3).abs() < 1e-12);
         // 50 robots at 4 Hz: ((1 − ρ) e^(−ρ))^49 with ρ = 0.004736.
-        let clean = radio.clean(stream(50.0, 4.0)).expect("a form");
+        let clean = radio.clean(stream(50.0, 4.0), 0.0).expect("a form");
         assert!((clean.value - 0.6283).abs() < 1e-4, "{clean:?}");
         assert!((radio.capacity(stream(1.0, 10.0)).value - 84.459).abs() < 1e-3);
     }
@@ -175,10 +220,10 @@ mod tests {
         let radio = over(AccessConfig::CsmaCa(CsmaCaConfig::default()));
         // Simulated by others: 0.983, 0.961, 0.906.
         for (robots, simulated) in [(5.0, 0.983), (10.0, 0.961), (20.0, 0.906)] {
-            let clean = radio.clean(stream(robots, 10.0)).expect("a form");
+            let clean = radio.clean(stream(robots, 10.0), 0.0).expect("a form");
             assert!((clean.value - simulated).abs() <= clean.accuracy, "{robots}: {clean:?}");
         }
-        assert_eq!(radio.clean(stream(50.0, 10.0)), None);
+        assert_eq!(radio.clean(stream(50.0, 10.0), 0.0), None);
     }
 
     #[test]
@@ -192,8 +237,13 @@ mod tests {
                 resync: Positive::new(10.0),
             })
         };
-        assert_eq!(tdma(0.002).clean(stream(10.0, 1.0)).map(|form| form.value), Some(1.0));
-        assert_eq!(tdma(0.001).clean(stream(10.0, 1.0)), None);
+        assert_eq!(
+            tdma(0.002).clean(stream(10.0, 1.0), 0.0).map(|form| form.value),
+            Some(1.0)
+        );
+        assert_eq!(tdma(0.001).clean(stream(10.0, 1.0), 0.0), None);
+        // Clocks that drift need a guard, and there is none.
+        assert_eq!(tdma(0.002).clean(stream(10.0, 1.0), 20e-6), None);
         assert!((tdma(0.002).capacity(stream(10.0, 10.0)).value - 50.0).abs() < 1e-9);
     }
 
@@ -203,5 +253,15 @@ mod tests {
         let idle = radio.mean_watts(stream(0.0, 0.0), 0.0).expect("known").value;
         let [_, _, listening, _] = watts(&radio.phy().supply);
         assert!((idle - listening).abs() < 1e-15);
+    }
+
+    /// At 1 % of duty a frame of 57 ms may go out every 5.7 s; an advertiser sends every 105 ms at most.
+    #[test]
+    fn what_medium_access_does_not_let_out_is_not_sustained() {
+        use crate::radio::technology::{BleAdvertisingConfig, LoRaConfig};
+        let lora = SharedConfig::of(TechnologyConfig::LoRa(LoRaConfig::default()));
+        assert!(lora.sustains(stream(10.0, 0.1)) && !lora.sustains(stream(10.0, 0.2)));
+        let ble = SharedConfig::of(TechnologyConfig::BleAdvertising(BleAdvertisingConfig::default()));
+        assert!(ble.sustains(stream(10.0, 5.0)) && !ble.sustains(stream(10.0, 10.0)));
     }
 }

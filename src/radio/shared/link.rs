@@ -78,7 +78,7 @@ impl LinkBudget {
     }
 
     /// How far the strongest robot reaches with so much power, shadowing at its best, metres.
-    fn distance_at(&self, power_dbm: f64) -> f64 {
+    pub fn distance_at(&self, power_dbm: f64) -> f64 {
         self.path
             .distance_at(self.strongest + self.best_gain - power_dbm + DEVIATIONS * self.sigma)
     }

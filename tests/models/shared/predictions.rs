@@ -85,6 +85,23 @@ fn where_no_form_holds_the_reason_is_said() {
     let full = cell(50, "when: Poisson(20.0), payload: 100", "access: CsmaCa()");
     assert!(refused(&full, "overlap_ratio").contains("no closed form"));
     assert!(refused(&full, "radio.energy_J").contains("frames wait"));
+    assert!(refused(&full, "radio.airtime_share").contains("more to send"));
+    // 802.15.4 listens with 10 dB less than it receives with: in range, and not heard by those who listen first.
+    let deaf = with_robots(
+        scenario(
+            1.0,
+            "when: Poisson(2.0), payload: 20",
+            "arena: (size: (9.0, 9.0)), swarm: (robots: 5, deploy: Cluster(radius: 1.0)),",
+            "technology: Ieee802154(), transmit_power: -45.0",
+        ),
+        5,
+    );
+    assert!(refused(&deaf, "overlap_ratio").contains("hidden"));
+    let lora = with_robots(
+        scenario(1.0, "when: Poisson(2.0), payload: 20", EVERYBODY, "technology: LoRa()"),
+        5,
+    );
+    assert!(refused(&lora, "radio.airtime_share").contains("medium access"));
     let saturated = cell(5, "when: Saturated, payload: 100", "access: CsmaCa()");
     assert!(refused(&saturated, "radio.airtime_share").contains("steady stream"));
     let wide = with_robots(
