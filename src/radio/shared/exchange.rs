@@ -62,9 +62,7 @@ impl Shared {
         let position = places.position(robot, now);
         let ends = now + airtime;
         self.longest = self.longest.max(airtime);
-        let since = self.since(now);
-        self.bursts.forget(since);
-        let burst = self.bursts.add(Burst {
+        let heard = self.launch(Burst {
             sender: robot,
             content,
             begins: now,
@@ -73,23 +71,31 @@ impl Shared {
             channel,
             cut: false,
         });
-        self.agenda.add(ends, Task::End(burst));
-        let heard = Heard {
-            burst,
-            begins: now,
-            ends,
-            power: f64::INFINITY,
-            dbm: f32::NAN,
-            channel,
-            is_noise: false,
-        };
+        self.agenda.add(ends, Task::End(heard.burst));
+        let since = self.since(now);
         self.ears[robot.index()].hear(heard, since);
         self.ears[robot.index()].busy.add(now, ends);
         let radio = &mut self.radios[robot.index()];
         radio.sent = radio.sent + airtime;
 
         self.reach(Source::Robot(robot), position, heard, places);
-        burst
+        heard.burst
+    }
+
+    /// A burst begins: how whoever it reaches takes it up, but for its power.
+    fn launch(&mut self, burst: Burst) -> Heard {
+        self.bursts.forget(self.since(burst.begins));
+        let (begins, ends, channel) = (burst.begins, burst.ends, burst.channel);
+        let is_noise = matches!(burst.content, Content::Noise);
+        Heard {
+            burst: self.bursts.add(burst),
+            begins,
+            ends,
+            power: f64::INFINITY,
+            dbm: f32::NAN,
+            channel,
+            is_noise,
+        }
     }
 
     /// A jammer is on for a while: whoever it reaches takes it up.
@@ -99,30 +105,17 @@ impl Shared {
         if let Some(next) = next {
             self.agenda.add(next, Task::Jam(place));
         }
-        self.bursts.forget(self.since(now));
-        let burst = self.bursts.add(Burst {
+        let (position, power) = (jammer.position, jammer.power);
+        let heard = self.launch(Burst {
             sender: NOBODY,
             content: Content::Noise,
             begins: now,
             ends,
-            position: jammer.position,
+            position,
             channel: 0,
             cut: false,
         });
-        let heard = Heard {
-            burst,
-            begins: now,
-            ends,
-            power: f64::INFINITY,
-            dbm: f32::NAN,
-            channel: 0,
-            is_noise: true,
-        };
-        let source = Source::Jammer {
-            place,
-            power: jammer.power,
-        };
-        self.reach(source, jammer.position, heard, places);
+        self.reach(Source::Jammer { place, power }, position, heard, places);
     }
 
     /// Whoever a burst from `here` reaches takes it up.
