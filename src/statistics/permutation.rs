@@ -25,8 +25,10 @@ pub type Part = [f64; 2];
 pub struct Tested {
     /// The two-sided p-value.
     pub p: f64,
-    /// The least p-value that these trials could have given, however they had come out: 1 where the two sides are the same in every trial.
+    /// The least p-value that these trials could have given, however they had come out.
     pub least: f64,
+    /// Whether the two sides are the same in every trial.
+    pub alike: bool,
 }
 
 /// Ratio of the sums of `parts`; not finite where nothing was counted.
@@ -119,6 +121,7 @@ fn over_ways(pairs: usize, tests: usize, is_as_large: &dyn Fn(&Way) -> bool) -> 
         return Tested {
             p: large as f64 / f64::from(ways),
             least: least_of_pairs(pairs as u64),
+            alike: pairs == 0,
         };
     }
     let most = (WAYS_A_TEST * tests as u64).clamp(FEWEST_WAYS, MOST_WAYS);
@@ -139,6 +142,7 @@ fn over_ways(pairs: usize, tests: usize, is_as_large: &dyn Fn(&Way) -> bool) -> 
     Tested {
         p: large as f64 / ways as f64,
         least: least_of_pairs(pairs as u64).max(1.0 / (most + 1) as f64),
+        alike: false,
     }
 }
 
@@ -207,6 +211,17 @@ mod tests {
     fn equal_pairs_show_no_difference_and_weigh_nothing() {
         let a = plain(&[1.0, 2.0, 3.0]);
         assert_eq!(p(&a, &a), Some(1.0));
+        // One pair that differs could show nothing, and is not the same for that.
+        let (one, other) = (plain(&[3.0, 1.0]), plain(&[3.0, 2.0]));
+        let tested = paired_permutation(&[[&one, &other]], 1).unwrap();
+        assert_eq!(
+            tested,
+            Tested {
+                p: 1.0,
+                least: 1.0,
+                alike: false
+            }
+        );
         let (mut a, mut b) = (plain(&[1.0; 40]), plain(&[1.0; 40]));
         a.extend(plain(&[0.0; 6]));
         b.extend(plain(&[1.0; 6]));
@@ -226,7 +241,7 @@ mod tests {
         let (a, b) = (plain(&[0.0; 9]), plain(&[1.0, 2.0, 3.0, 1.0, 2.0, 3.0, 0.0, 0.0, 0.0]));
         let few = paired_permutation(&[[&a, &b]], 1).unwrap();
         assert_eq!((few.p, few.least), (2.0 / 64.0, 2.0 / 64.0));
-        assert!(paired_permutation(&[[&a, &a]], 1).unwrap().least >= 1.0);
+        assert!(paired_permutation(&[[&a, &a]], 1).unwrap().alike);
         let (a, b) = (plain(&[0.0; 40]), plain(&[1.0; 40]));
         for (tests, least) in [(1, 1e-4), (50, 1e-4), (600, 1.0 / 120_000.0)] {
             let many = paired_permutation(&[[&a, &b]], tests).unwrap();
@@ -268,7 +283,11 @@ mod tests {
         assert_eq!((tested.p, tested.least), (20.0 / 32.0, 2.0 / 32.0));
         assert_eq!(
             sign_permutation(&[vec![0.0]], 1).unwrap(),
-            Tested { p: 1.0, least: 1.0 }
+            Tested {
+                p: 1.0,
+                least: 1.0,
+                alike: true
+            }
         );
         assert_eq!(sign_permutation(&[vec![f64::NAN]], 1), None);
     }

@@ -106,7 +106,7 @@ impl Tests {
         }
         let count = |of: &dyn Fn(usize) -> bool| (0..found.len()).filter(|&place| of(place)).count() as u64;
         let tests = count(&|place| able[place]);
-        let alike = count(&|place| least[place].is_none_or(|least| least >= 1.0));
+        let alike = count(&|place| found[place].is_none_or(|tested| tested.alike));
         let impossible = found.len() as u64 - tests - alike;
         let asked = (tests + impossible) as usize;
         self.family = Family {
@@ -142,7 +142,7 @@ impl Outcome {
         match (tested, adjusted) {
             (None, _) => Self::NotComparable,
             (_, Some(p)) => Self::Adjusted(p),
-            (Some(tested), None) if tested.least >= 1.0 => Self::Alike,
+            (Some(tested), None) if tested.alike => Self::Alike,
             (Some(_), None) => Self::Impossible,
         }
     }

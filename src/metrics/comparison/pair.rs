@@ -174,9 +174,15 @@ impl Tests {
     /// What Mann and Whitney's test found. Where all values are the same it finds nothing, and could not have.
     fn ranks(&self, samples: [&[Sample]; 2]) -> Option<Tested> {
         let [a, b] = samples.map(values);
-        let alike = || (!a.is_empty() && !b.is_empty()).then_some(Tested { p: 1.0, least: 1.0 });
+        let alike = || {
+            (!a.is_empty() && !b.is_empty()).then_some(Tested {
+                p: 1.0,
+                least: 1.0,
+                alike: true,
+            })
+        };
         match (self.mann_whitney, least_of_ranks(&a, &b)) {
-            (Some(p), Some(least)) => Some(Tested { p, least }),
+            (Some(p), Some(least)) => Some(Tested { p, least, alike: false }),
             _ => alike(),
         }
     }

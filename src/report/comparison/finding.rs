@@ -162,7 +162,7 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &[&Setting]
         return format!("No setting is detectably better than {there} in {name} ({at_reference}). {tally}{others}");
     };
     let mut found = format!(
-        "{} the {} {name}: {}, {} than {there} (adjusted p {}). {tally}",
+        "{} the {} {name}: {}, {} than {there} (adjusted p {}).",
         have(best),
         superlative(figure),
         value(best[0], figure),
@@ -177,6 +177,8 @@ fn against_reference(comparison: &Comparison, figure: &Figure, best: &[&Setting]
         found.push(' ');
         found.push_str(&aside(comparison, pair, figure));
     }
+    found.push(' ');
+    found.push_str(&tally);
     found
 }
 
