@@ -7,6 +7,7 @@ use plotly::layout::{Axis, AxisRange, BarMode, HoverMode, Legend, Margin, TraceO
 use plotly::{Layout, Plot, Scatter};
 
 use crate::metrics::comparison::apart;
+use crate::metrics::detection::Cause;
 
 /// Ink of axes and words.
 pub const INK: &str = "#333333";
@@ -21,19 +22,23 @@ pub const DIRECTIONS: [&str; 2] = ["#0072b2", "#d55e00"];
 const TOPICS: [&str; 7] = [
     "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c510a",
 ];
-const CAUSES: [&str; 12] = [
+/// In the order of [`Cause::ALL`].
+const CAUSES: [&str; Cause::ALL.len()] = [
     "#b2182b", "#ef8a62", "#7b3294", "#999999", "#c2a5cf", "#4d4d4d", "#d9b38c", "#1b7837", "#80cdc1", "#4393c3",
-    "#fdb863", "#35978f",
+    "#fdb863", "#35978f", "#8c510a", "#053061", "#e7298a", "#a6d854", "#fde725",
 ];
+/// Room above a chart for the buttons that a pointer brings up, CSS pixels.
+pub const TOOLS: u32 = 30;
 
 /// The colour of topic number `topic`.
 pub fn topic_colour(topic: usize) -> &'static str {
     TOPICS[topic % TOPICS.len()]
 }
 
-/// The colour of cause number `cause`.
-pub fn cause_colour(cause: usize) -> &'static str {
-    CAUSES[cause % CAUSES.len()]
+/// The colour of a cause, of a loss or of whatever else kept messages away: the same in all figures.
+pub fn cause_colour(cause: Cause) -> &'static str {
+    let place = Cause::ALL.iter().position(|known| *known == cause);
+    CAUSES[place.unwrap_or(0)]
 }
 
 /// The colour of role number `index`, called `name`, as the pictures have it.
@@ -131,7 +136,7 @@ pub fn chart(x: Axis, y: Axis, hover: HoverMode) -> Plot {
         .legend(legend())
         .hover_mode(hover)
         .hover_label(Label::new().font(Font::new().size(12)).name_length(40))
-        .margin(Margin::new().left(8).right(12).top(8).bottom(8))
+        .margin(Margin::new().left(8).right(12).top(TOOLS as usize).bottom(8))
         .font(Font::new().family("system-ui, sans-serif").size(12).color(INK))
         .paper_background_color("#ffffff")
         .plot_background_color("#ffffff");

@@ -29,7 +29,7 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
     let mut table = DataTable::new(&["verdict", "cause", "suspicions"]);
     let names = Names::of(Verdict::ALL.map(said));
     let mut plot = stacked(axis("suspicions"), names.down());
-    for (number, cause) in Cause::ALL.into_iter().enumerate() {
+    for cause in Cause::ALL {
         let counts = Verdict::ALL.map(|verdict| count(verdict, cause));
         if counts.iter().all(|&count| count == 0) {
             continue;
@@ -42,7 +42,7 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
         let bars = Bar::new(counts.to_vec(), names.all())
             .name(words(cause.name()))
             .orientation(Orientation::Horizontal)
-            .marker(Marker::new().color(cause_colour(number)))
+            .marker(Marker::new().color(cause_colour(cause)))
             .hover_template("%{y}: %{x}");
         plot.add_trace(bars);
     }

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use maud::{Markup, PreEscaped, html};
 use plotly::Plot;
 
+use super::chart::TOOLS;
 use super::table::DataTable;
 
 /// A figure.
@@ -40,7 +41,7 @@ pub enum Content {
 }
 
 /// Height of a chart that is as any other.
-pub const HEIGHT: u32 = 320;
+pub const HEIGHT: u32 = 320 + TOOLS;
 
 impl Panel {
     /// A chart of the usual height.
@@ -50,7 +51,7 @@ impl Panel {
 
     /// A chart of `rows` bars, boxes or intervals: the more there are, the closer they stand.
     pub fn of_rows(title: impl Into<Cow<'static, str>>, plot: Plot, rows: usize) -> Self {
-        Self::of_height(title, plot, 100 + row_height(rows) * rows.max(1) as u32)
+        Self::of_height(title, plot, TOOLS + 90 + row_height(rows) * rows.max(1) as u32)
     }
 
     /// A chart of its own height.

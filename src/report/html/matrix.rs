@@ -4,7 +4,7 @@ use plotly::common::{ColorBar, ColorScale, ColorScaleElement, Font, HoverInfo, M
 use plotly::layout::HoverMode;
 use plotly::{HeatMap, Plot, Scatter};
 
-use super::chart::{chart, escaped, shown};
+use super::chart::{TOOLS, chart, escaped, shown};
 use super::figure::{Panel, row_height};
 use super::names::Names;
 use super::verdict::{BETTER, UNCLEAR, WORSE, words};
@@ -15,7 +15,7 @@ use crate::report::comparison::{fitted, label};
 /// Columns of which a telephone shows a number each.
 const MOST_NUMBERS: usize = 5;
 /// Height that names below and a legend above take, CSS pixels.
-const AROUND: u32 = 150;
+const AROUND: u32 = 140 + TOOLS;
 
 /// Every setting less every other in one figure, coloured by verdict.
 pub fn pairs(comparison: &Comparison, pairs: &[&Pair]) -> Panel {

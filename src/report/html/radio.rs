@@ -2,7 +2,7 @@
 
 use plotly::Bar;
 use plotly::Scatter;
-use plotly::common::{Font, HoverInfo, LineShape, Marker, Mode, Orientation, Position};
+use plotly::common::{HoverInfo, LineShape, Marker, MarkerSymbol, Mode, Orientation};
 use plotly::layout::{AxisRange, AxisType, HoverMode};
 
 use super::PageInput;
@@ -11,7 +11,9 @@ use super::figure::{Figure, Panel};
 use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::LatencyHistogram;
+use crate::metrics::detection::Cause;
 use crate::metrics::summary::Fates;
+use crate::radio::LossCause;
 use crate::report::number;
 
 /// Copies lost, by topic and cause.
@@ -52,7 +54,7 @@ pub fn lost(input: &PageInput) -> Figure {
         let bars = Bar::new(rows.iter().map(share).collect(), names.all())
             .name(words(name))
             .orientation(Orientation::Horizontal)
-            .marker(Marker::new().color(cause_colour(cause)))
+            .marker(Marker::new().color(cause_colour(Cause::Lost(LossCause::ALL[cause]))))
             .hover_template("%{y}: %{x:.4g} %");
         plot.add_trace(bars);
     }
@@ -104,12 +106,14 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
     let mut plot = chart(x, percent_axis("copies that took no longer"), HoverMode::Closest);
     let hover = "%{y:.2f} % within %{x:.4g} ms<extra></extra>";
     plot.add_trace(line("copies", ALL, &curve, LineShape::Hv, hover).show_legend(false));
-    plot.add_trace(quantiles(&all));
+    for (mark, symbol) in quantiles(&all).iter().zip(SYMBOLS) {
+        plot.add_trace(mark.trace(symbol));
+    }
     Some(Figure {
         id: "latency".into(),
         title: "Latency as felt".into(),
         caption: format!(
-            "Which share of the {} copies that arrived {} took no longer than so many milliseconds, from the start of its transmission to its arrival; dots are the median and the 95th and \
+            "Which share of the {} copies that arrived {} took no longer than so many milliseconds, from the start of its transmission to its arrival; marks are the median and the 95th and \
              99th percentile. Times are those of buckets at most 1/128 of their lower end wide.{}",
             number::count(all.count()),
             input.in_trials(),
@@ -135,8 +139,22 @@ struct Mark {
     time: String,
 }
 
+/// A mark for each: none looks like another.
+const SYMBOLS: [MarkerSymbol; 3] = [MarkerSymbol::Circle, MarkerSymbol::Square, MarkerSymbol::Diamond];
+
+impl Mark {
+    /// The mark, named above the chart: beside it a telephone has no room.
+    fn trace(&self, symbol: MarkerSymbol) -> Box<Scatter<f64, f64>> {
+        Scatter::new(vec![self.at[0]], vec![self.at[1]])
+            .mode(Mode::Markers)
+            .name(format!("{}: {}", self.names, self.time))
+            .marker(Marker::new().color(DIRECTIONS[1]).symbol(symbol).size(9))
+            .hover_info(HoverInfo::Skip)
+    }
+}
+
 /// Marks at the median and at the 95th and 99th percentile, those that read the same in one.
-fn quantiles(all: &LatencyHistogram) -> Box<Scatter<f64, f64>> {
+fn quantiles(all: &LatencyHistogram) -> Vec<Mark> {
     let mut marks: Vec<Mark> = Vec::new();
     for (q, name) in [(0.5, "median"), (0.95, "95 %"), (0.99, "99 %")] {
         let Some(latency) = all.quantile(q) else { continue };
@@ -150,22 +168,5 @@ fn quantiles(all: &LatencyHistogram) -> Box<Scatter<f64, f64>> {
             }),
         }
     }
-    let label = |mark: &Mark| format!("  {}: {}  ", mark.names, mark.time);
-    // What is near the top has no room above, and may have none on the left.
-    let side = |mark: &Mark| {
-        if mark.at[1] > 98.0 {
-            Position::BottomRight
-        } else {
-            Position::MiddleLeft
-        }
-    };
-    let places = |part: usize| marks.iter().map(|mark| mark.at[part]).collect::<Vec<_>>();
-    Scatter::new(places(0), places(1))
-        .mode(Mode::MarkersText)
-        .marker(Marker::new().color(DIRECTIONS[1]).size(7))
-        .text_array(marks.iter().map(label).collect::<Vec<_>>())
-        .text_position_array(marks.iter().map(side).collect())
-        .text_font(Font::new().size(11))
-        .hover_info(HoverInfo::Skip)
-        .show_legend(false)
+    marks
 }
