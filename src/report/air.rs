@@ -2,6 +2,7 @@
 //! to what.
 
 use super::layout::Page;
+use super::number;
 use super::number::{NOTHING, count, estimate, figure, percent, seconds, signed};
 use crate::metrics::summary::{RadioSummary, Sending};
 use crate::metrics::{Estimate, Summary};
@@ -85,6 +86,13 @@ pub fn rows(summary: &Summary) -> Vec<Row> {
         rows.push(("power", format!("{power} dBm, mean of the copies that were understood")));
     }
     rows.extend(energy(radio));
+    if let Some(life) = &radio.lifetime_s {
+        let lasted = match life.estimate.value {
+            Some(_) => number::lasted(life),
+            None => format!("none of {} was empty at the end", count(life.cut_off)),
+        };
+        rows.push(("battery", lasted));
+    }
     rows
 }
 
@@ -112,12 +120,8 @@ fn energy(radio: &RadioSummary) -> Option<Row> {
     let states: Vec<_> = states
         .map(|(state, energy)| format!("{state} {}", figure(*energy)))
         .collect();
-    let empty = match radio.empty.value {
-        0 => String::new(),
-        empty => format!("; {} were empty before the end", count(empty)),
-    };
     let energy = estimate(&radio.energy.estimate, figure);
-    Some(("energy", format!("{energy} J a robot ({}){empty}", states.join(", "))))
+    Some(("energy", format!("{energy} J a robot ({})", states.join(", "))))
 }
 
 /// A rate in the unit that suits it.

@@ -174,6 +174,7 @@ impl Scenario {
     pub fn figures(&self) -> Registry {
         let all = Registry::of(self.protocol.all_topics());
         let all = match self.radio.shared() {
+            Some(radio) if radio.battery.is_some() => all.sharing_air().on_batteries(),
             Some(_) => all.sharing_air(),
             None => all,
         };

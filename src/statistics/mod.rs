@@ -54,6 +54,15 @@ pub struct Estimate {
     pub n: u64,
 }
 
+impl Estimate {
+    /// The same, of a mean that cannot be above `longest` where there is one: nor is its interval.
+    #[must_use]
+    pub fn at_most(mut self, longest: Option<f64>) -> Self {
+        self.ci95 = self.ci95.map(|end| Some(end?.min(longest.unwrap_or(f64::INFINITY))));
+        self
+    }
+}
+
 /// The standard normal quantile that leaves out [`TAIL`] above it, 1.96.
 fn normal_quantile() -> f64 {
     Normal::standard().inverse_cdf(1.0 - TAIL)

@@ -1,12 +1,12 @@
 //! Radios on which frames take time: how full the channel is, how long frames wait for it and how often they go out, what that costs.
 
-use super::figure::Better;
+use super::figure::{Better, Sample};
 use super::registry::Registry;
-use crate::engine::Span;
+use crate::engine::{SimTime, Span};
 use crate::metrics::air::{AirRecord, RobotAir, Waits};
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS};
-use crate::statistics::{Estimator, Part, mean};
+use crate::statistics::{Estimator, Observation, Part, mean};
 
 /// A time of a robot.
 type Time = fn(&RobotAir) -> Span;
@@ -30,6 +30,17 @@ impl Registry {
     #[must_use]
     pub fn sharing_air(mut self) -> Self {
         declare(&mut self);
+        self
+    }
+
+    /// The same, and of robots with a battery `radio.lifetime_s`: how long it lasts, the mean of these times. Of a battery that lasts beyond
+    /// the end the time is cut off there.
+    #[must_use]
+    pub fn on_batteries(mut self) -> Self {
+        let kind = (SECONDS, Better::Higher, Estimator::Times);
+        self.add_as_ratio("radio.lifetime_s", "life of a battery", kind, |record| {
+            Sample::times(lifetimes(record).collect())
+        });
         self
     }
 }
@@ -96,6 +107,14 @@ fn declare(registry: &mut Registry) {
 /// The robots of a trial.
 fn robots(record: &TrialRecord) -> &[RobotAir] {
     record.air.as_ref().map_or(&[], |air: &AirRecord| &air.robots)
+}
+
+/// How long each robot's battery lasted, or how long it was watched.
+fn lifetimes(record: &TrialRecord) -> impl Iterator<Item = Observation> {
+    robots(record).iter().map(|robot| Observation {
+        time: robot.empty_at.map_or(record.simulated.as_secs(), SimTime::as_secs),
+        happened: robot.empty_at.is_some(),
+    })
 }
 
 fn sum(record: &TrialRecord, count: impl Fn(&RobotAir) -> u64) -> f64 {

@@ -99,15 +99,80 @@ pub fn pool(samples: &mut [Sample]) -> Option<Lasting> {
 }
 
 impl Figure {
-    /// The figure over trials, one sample each.
+    /// The figure over trials, one sample each. A mean of what was cut off is restricted to the longest, and its interval does not reach
+    /// beyond that.
     #[must_use]
     pub fn estimate(&self, samples: &[Sample]) -> Estimate {
-        self.estimator.estimate(&parts(samples))
+        self.estimator.estimate(&parts(samples)).at_most(restriction(samples))
     }
+}
+
+/// The longest of what `samples` tell of, if it was cut off.
+fn restriction(samples: &[Sample]) -> Option<f64> {
+    if samples.iter().all(|sample| !sample.is_censored) {
+        return None;
+    }
+    let seen = samples.iter().flat_map(|sample| {
+        let alone = sample.value().filter(|_| sample.times.is_empty());
+        let times = sample.times.iter().map(|seen| (seen.time, !seen.happened));
+        times.chain(alone.map(|value| (value, sample.is_censored)))
+    });
+    let longest = seen.max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    longest.filter(|(_, is_cut_off)| *is_cut_off).map(|(time, _)| time)
 }
 
 /// The parts of trials.
 #[must_use]
 pub fn parts(samples: &[Sample]) -> Vec<Part> {
     samples.iter().map(|sample| sample.part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::{Estimator, Observation};
+
+    fn figure(estimator: Estimator) -> Figure {
+        Figure {
+            key: "a".into(),
+            name: "a".into(),
+            unit: "s".into(),
+            better: Better::Lower,
+            is_ratio: false,
+            estimator,
+        }
+    }
+
+    #[test]
+    fn the_interval_of_a_restricted_mean_ends_where_watching_did() {
+        let plain = |value: f64, is_censored: bool| Sample {
+            is_censored,
+            ..Sample::plain(Some(value))
+        };
+        let cut_off = [
+            plain(10.0, false),
+            plain(100.0, true),
+            plain(100.0, false),
+            plain(99.0, true),
+        ];
+        let open = [
+            plain(10.0, false),
+            plain(100.0, false),
+            plain(99.0, false),
+            plain(99.0, true),
+        ];
+        let upper = |samples: &[Sample], estimator| figure(estimator).estimate(samples).ci95[1].unwrap();
+        assert!((upper(&cut_off, Estimator::Mean) - 100.0).abs() < 1e-12);
+        assert!(upper(&open, Estimator::Mean) > 100.0);
+        let trial = |times: &[(f64, bool)]| {
+            let seen = times.iter().map(|&(time, happened)| Observation { time, happened });
+            Sample::times(seen.collect())
+        };
+        let mut lasting = [
+            trial(&[(3.0, true), (50.0, false)]),
+            trial(&[(50.0, false), (49.0, true)]),
+        ];
+        assert_eq!(pool(&mut lasting).unwrap().restricted_to, Some(50.0));
+        assert!((upper(&lasting, Estimator::Times) - 50.0).abs() < 1e-12);
+    }
 }

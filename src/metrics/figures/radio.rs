@@ -12,6 +12,19 @@ use crate::statistics::{Estimator, Part};
 pub(super) fn declare(registry: &mut Registry) {
     let kind = (DIMENSIONLESS, Better::Higher, Estimator::ShareOf);
     registry.add_ratio("delivery_ratio", "copies delivered", kind, delivery);
+    let kind = (DIMENSIONLESS, Better::Lower, Estimator::ShareOf);
+    for cause in LossCause::ALL {
+        let (key, name) = (cause.name(), cause.name().replace('_', " "));
+        registry.add_ratio(
+            &format!("lost.{key}"),
+            &format!("copies lost to {name}"),
+            kind,
+            move |record| {
+                let sum = all_topics(record);
+                [sum.lost[cause as usize] as f64, sum.offered as f64]
+            },
+        );
+    }
     let kind = (SECONDS, Better::Lower, Estimator::Mean);
     for (key, name, q) in [
         ("latency_s.p50", "latency, median", 0.5),
@@ -30,8 +43,7 @@ pub(super) fn declare(registry: &mut Registry) {
 /// Copies of one trial that are delivered, and those offered. What is under way at the end has not been lost so far: it counts as
 /// delivered in the share of those that came as far as their receiver and were heard there. So copies under way bias nothing.
 pub(in crate::metrics) fn delivery(record: &TrialRecord) -> Part {
-    let mut sum = TopicFates::default();
-    record.ledger.iter().for_each(|fates| sum.add(fates));
+    let sum = all_topics(record);
     let unheard = sum.lost[LossCause::ReceiverDown as usize];
     let arrived = (sum.delivered + unheard) as f64;
     let heard = if unheard > 0 {
@@ -40,4 +52,10 @@ pub(in crate::metrics) fn delivery(record: &TrialRecord) -> Part {
         1.0
     };
     [sum.delivered as f64 + sum.in_flight as f64 * heard, sum.offered as f64]
+}
+
+fn all_topics(record: &TrialRecord) -> TopicFates {
+    let mut sum = TopicFates::default();
+    record.ledger.iter().for_each(|fates| sum.add(fates));
+    sum
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::estimates::Figures;
-use super::quantity::{Measured, Named, Quantity};
+use super::quantity::{Lasted, Measured, Named, Quantity};
 use crate::metrics::air::{ENERGY_STATES, RobotAir};
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS, Unit};
@@ -40,6 +40,9 @@ pub struct RadioSummary {
     /// What a robot's radio drew for what, mean over robots and trials; absent where the radio does not account for it.
     #[serde(rename = "energy_by_state_J", default, skip_serializing_if = "Named::is_empty")]
     pub energy_by_state: Named<f64>,
+    /// How long a robot's battery lasts; absent where robots have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lifetime_s: Option<Lasted>,
     /// Robots whose battery was empty before the end, over all trials.
     pub empty: Quantity<u64>,
 }
@@ -151,6 +154,9 @@ impl RadioSummary {
                 dropped: Named::of(LossCause::ALL.map(LossCause::name), |cause| all.dropped[cause]),
                 unit: "frames".into(),
             },
+            lifetime_s: figures
+                .has("radio.lifetime_s")
+                .then(|| figures.lasted("radio.lifetime_s")),
             empty: Quantity {
                 value: *empty,
                 unit: "robots".into(),

@@ -151,7 +151,7 @@ impl Healed {
             time: HealingTime {
                 median: median_survival(&observations),
                 mean: Lasted {
-                    estimate: Estimator::Times.estimate(&parts),
+                    estimate: Estimator::Times.estimate(&parts).at_most(lasting.restricted_to),
                     cut_off: lasting.cut_off,
                     restricted_to: lasting.restricted_to,
                     unit: SECONDS.into(),

@@ -62,11 +62,16 @@ pub fn unknown(key: &str, known: &[String]) -> String {
     format!("no figure `{key}` is common to all settings{guess}")
 }
 
-/// Names the figures, those of single topics left out.
+/// Names the figures, those of single topics and causes by their kind.
 pub fn help(known: &[String]) -> String {
-    let whole = known.iter().filter(|key| !key.contains("by_topic"));
+    let whole = known
+        .iter()
+        .filter(|key| !key.contains("by_topic") && !key.starts_with("lost."));
     let keys: Vec<&str> = whole.map(String::as_str).collect();
-    format!("figures are {}, and bandwidth.by_topic.<topic>.*", keys.join(", "))
+    format!(
+        "figures are {}, lost.<cause>, and bandwidth.by_topic.<topic>.*",
+        keys.join(", ")
+    )
 }
 
 /// Figures that a study names and not all of its `scenarios` have: `named`, the first as its `figure` and `also` further ones, and the
