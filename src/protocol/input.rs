@@ -51,8 +51,8 @@ pub struct Input<M> {
     pub wake: Wake,
     /// The frames that arrived since it last woke, in order of arrival.
     pub inbox: Vec<Reception<M>>,
-    /// With what power each frame of the inbox arrived, dBm, over a radio that knows powers; else empty. [`receptions`](Self::receptions) has
-    /// both together.
+    /// With what power each frame of the inbox arrived, dBm, over a radio that knows powers, if its protocol [reads](super::Protocol::SENSES_POWER) that; else empty.
+    /// [`receptions`](Self::receptions) has both together.
     pub powers: Vec<f32>,
     /// What became of frames of its own since it last woke, in order of time; empty unless its protocol
     /// [heeds](super::Protocol::HEEDS_OUTCOMES) that.

@@ -58,6 +58,8 @@ pub trait Protocol: Sized + 'static {
     const PROBE: Option<Topic> = None;
     /// Whether robots read [`Input::proximity`]; if not, it stays empty and costs nothing.
     const SENSES_PROXIMITY: bool = true;
+    /// Whether robots read [`Input::powers`]; if not, it stays empty and costs nothing.
+    const SENSES_POWER: bool = true;
     /// Whether a robot also hears what is [sent](Output::send) to another within its range. If so it is offered a copy as of a
     /// broadcast, and [`Frame::address`] says whom it is for; if not, its radio drops the frame and nothing is counted.
     const OVERHEARS: bool = false;

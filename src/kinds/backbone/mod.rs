@@ -337,6 +337,7 @@ impl Protocol for Backbone {
     type Codec = BackboneCodec;
     const TOPICS: &'static [&'static str] = &["status", "request", "parent strand", "child strand", "probe"];
     const ROLES: &'static [&'static str] = &["free", "root", "networker", "worker"];
+    const SENSES_POWER: bool = false;
     const STATUS: Option<Topic> = Some(Topic(0));
     const PROBE: Option<Topic> = Some(Topic(4));
 

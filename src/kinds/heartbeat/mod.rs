@@ -130,6 +130,7 @@ impl<P: Carried> Protocol for Heartbeat<P> {
     const STATUS: Option<Topic> = Some(Topic(0));
     const PROBE: Option<Topic> = Some(Topic(1));
     const SENSES_PROXIMITY: bool = false;
+    const SENSES_POWER: bool = false;
 
     #[inline]
     fn topic(message: &Message<P>) -> Topic {

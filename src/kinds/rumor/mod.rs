@@ -250,6 +250,7 @@ impl Protocol for Rumor {
     const TOPICS: &'static [&'static str] = &["rumor", "request"];
     const ROLES: &'static [&'static str] = &["ignorant", "informed"];
     const SENSES_PROXIMITY: bool = false;
+    const SENSES_POWER: bool = false;
 
     fn topic(message: &Message) -> Topic {
         match message {

@@ -95,6 +95,7 @@ impl Protocol for Source {
     const TOPICS: &'static [&'static str] = &["load"];
     const ROLES: &'static [&'static str] = &["robot"];
     const SENSES_PROXIMITY: bool = false;
+    const SENSES_POWER: bool = false;
     const HEEDS_OUTCOMES: bool = true;
 
     fn step(&mut self, now: SimTime, input: &mut Input<Load>, output: &mut Output<Load>) {

@@ -127,7 +127,7 @@ impl Air {
     /// A copy of a frame of `sender` is decided.
     pub fn measured(&mut self, sender: ActorId, reading: &Reading) {
         self.robots[reading.receiver.index()].heard.add(reading);
-        self.by_distance[self.bands.of(reading.distance)].add(reading);
+        self.by_distance[Bands::of(reading.distance)].add(reading);
         if let Some(links) = &mut self.links {
             let link = links.entry((sender, reading.receiver)).or_default();
             link.tally.add(reading);

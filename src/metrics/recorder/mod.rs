@@ -324,6 +324,7 @@ impl Recorder {
     }
 
     /// The book of what the radio tells.
+    #[inline]
     fn air(&mut self) -> &mut Air {
         self.air
             .get_or_insert_with(|| Box::new(Air::new(self.robots, self.links)))

@@ -53,6 +53,12 @@ impl ErrorTable {
         }
     }
 
+    /// The ratio from which on no bit goes wrong.
+    pub(in crate::radio) fn certain(&self) -> f32 {
+        let beyond = self.cells.len().checked_sub(1).and_then(|last| edges().nth(last));
+        beyond.unwrap_or(self.least)
+    }
+
     /// The logarithm of the chance that one bit comes through at ratio `snr` (plain, not dB), at most 0; −∞ where none does. Times the number of bits, and added up over the
     /// parts of a frame, it is the logarithm of the chance that the frame arrives.
     #[inline]

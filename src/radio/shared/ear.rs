@@ -32,13 +32,20 @@ impl Heard {
     pub fn overlaps(&self, from: SimTime, until: SimTime) -> bool {
         self.begins < until && self.ends > from
     }
+
+    /// Whether it is noticed on `channel`.
+    #[inline]
+    pub fn shares(&self, channel: u8) -> bool {
+        self.channel == channel || self.is_noise
+    }
 }
 
 /// One robot's.
 #[derive(Debug, Default)]
 pub(super) struct Ear {
-    /// In the order in which they began.
-    heard: VecDeque<Heard>,
+    /// In the order in which they began; those before `first` are forgotten.
+    heard: Vec<Heard>,
+    first: usize,
     /// The longest of them so far.
     longest: Span,
     /// When it sent or turned round, and so heard nothing, in order of time.
@@ -74,7 +81,7 @@ impl Union {
 impl Ear {
     /// Asks for what it heard last.
     pub fn prefetch_contents(&self) {
-        if let Some(last) = self.heard.back() {
+        if let Some(last) = self.heard.last() {
             prefetch(last);
         }
         if let Some(last) = self.deaf.back() {
@@ -84,11 +91,15 @@ impl Ear {
 
     /// Takes up a burst, and forgets what ended before `since`.
     pub fn hear(&mut self, heard: Heard, since: SimTime) {
-        while self.heard.front().is_some_and(|oldest| oldest.ends < since) {
-            self.heard.pop_front();
+        while self.heard.get(self.first).is_some_and(|oldest| oldest.ends < since) {
+            self.first += 1;
+        }
+        if self.first > self.heard.len() / 2 {
+            self.heard.drain(..self.first);
+            self.first = 0;
         }
         self.longest = self.longest.max(heard.ends.since(heard.begins));
-        self.heard.push_back(heard);
+        self.heard.push(heard);
     }
 
     /// It sends or turns round from `from` to before `until`. What ended before `since` is forgotten.
@@ -107,53 +118,78 @@ impl Ear {
     }
 
     /// Whether it was deaf for any time from `from` to before `until`.
+    #[inline]
     pub fn is_deaf(&self, from: SimTime, until: SimTime) -> bool {
         let overlaps = |deaf: &&(SimTime, SimTime)| deaf.0 < until && deaf.1 > from;
         self.deaf.iter().rev().any(|deaf| overlaps(&deaf))
     }
 
-    /// This burst, if it reaches here.
-    pub fn of(&self, burst: BurstId) -> Option<&Heard> {
-        let heard = self.heard.iter().rev();
-        heard
-            .take_while(|heard| heard.burst >= burst)
-            .find(|heard| heard.burst == burst)
+    /// What is remembered.
+    #[inline]
+    fn all(&self) -> &[Heard] {
+        &self.heard[self.first..]
+    }
+
+    /// Where this burst stands for [`at`](Self::at), if it reaches here. It came lately, and is looked for from the end on.
+    #[inline]
+    pub fn place_of(&self, burst: BurstId) -> Option<usize> {
+        let mut place = self.heard.len();
+        while place > self.first && self.heard[place - 1].burst > burst {
+            place -= 1;
+        }
+        let place = place.checked_sub(1)?;
+        (place >= self.first && self.heard[place].burst == burst).then_some(place)
+    }
+
+    /// All else that is on air while what stands at `place` is, on its channel, as it began.
+    #[inline]
+    pub fn besides(&self, place: usize) -> impl Iterator<Item = &Heard> + Clone {
+        let heard = &self.heard[place];
+        let since = heard.begins - self.longest;
+        let (mut first, mut end) = (place, place + 1);
+        while first > self.first && self.heard[first - 1].begins >= since {
+            first -= 1;
+        }
+        while self.heard.get(end).is_some_and(|later| later.begins < heard.ends) {
+            end += 1;
+        }
+        self.heard[first..end].iter().filter(move |other| {
+            other.burst != heard.burst && other.shares(heard.channel) && other.overlaps(heard.begins, heard.ends)
+        })
     }
 
     /// All that is on air on `channel` at any time from `from` to before `until`, as it began. What began more than the longest burst
     /// before is over, so that it does not matter how much is remembered.
     pub fn during(&self, channel: u8, from: SimTime, until: SimTime) -> impl Iterator<Item = &Heard> + Clone {
         let (first, last) = (from - self.longest, until);
-        let first = self.heard.partition_point(|heard| heard.begins < first);
-        let heard = self.heard.range(first..).take_while(move |heard| heard.begins < last);
-        heard.filter(move |heard| (heard.channel == channel || heard.is_noise) && heard.overlaps(from, until))
+        let heard = self.all();
+        let heard = &heard[heard.partition_point(|heard| heard.begins < first)..];
+        let heard = heard.iter().take_while(move |heard| heard.begins < last);
+        heard.filter(move |heard| heard.shares(channel) && heard.overlaps(from, until))
     }
 
     /// The places of what is known of `burst` and of those that began after it, for [`at`](Self::at).
     pub fn from(&self, burst: BurstId) -> std::ops::Range<usize> {
-        self.heard.partition_point(|heard| heard.burst < burst)..self.heard.len()
+        self.first + self.all().partition_point(|heard| heard.burst < burst)..self.heard.len()
     }
 
     /// What stands at a place.
-    pub fn at(&self, place: usize) -> Heard {
-        self.heard[place]
+    #[inline]
+    pub fn at(&self, place: usize) -> &Heard {
+        &self.heard[place]
     }
 
     /// All frames on the channel of `heard` that are remembered, up to itself, as they began.
     pub fn until(&self, heard: &Heard) -> impl Iterator<Item = &Heard> {
         let (burst, channel) = (heard.burst, heard.channel);
-        let earlier = self.heard.iter().take_while(move |heard| heard.burst <= burst);
+        let earlier = self.all().iter().take_while(move |heard| heard.burst <= burst);
         earlier.filter(move |heard| heard.channel == channel && !heard.is_noise)
     }
 
     /// A burst breaks off.
     pub fn cut(&mut self, burst: BurstId, now: SimTime) {
-        let heard = self.heard.iter_mut().rev();
-        if let Some(heard) = heard
-            .take_while(|heard| heard.burst >= burst)
-            .find(|heard| heard.burst == burst)
-        {
-            heard.ends = now;
+        if let Some(place) = self.place_of(burst) {
+            self.heard[place].ends = now;
         }
     }
 }

@@ -173,7 +173,11 @@ impl Shared {
             }
             Content::Acknowledgement { of, to } => {
                 let waits = self.radios[to.index()].doing == Doing::Waits(of);
-                let gets = waits && self.verdict(id, (&burst, &self.receiver.waveform(&burst)), to).is_ok();
+                let place = self.ears[to.index()].place_of(id);
+                let gets = waits
+                    && self
+                        .verdict(place, (&burst, &self.receiver.waveform(&burst)), to)
+                        .is_ok();
                 gets.then(|| self.conclude(now, to, access::Outcome::Acknowledged, fates))?
             }
             Content::Noise => None,
@@ -201,9 +205,10 @@ impl Shared {
             let receiver = open.receiver;
             let towards = burst.position - places.position(receiver, now);
             open.distance = towards.norm() as f32;
+            let place = self.ears[receiver.index()].place_of(id);
             // Light has no powers here: it is there, or it is not.
             if self.budget.infrared.is_none()
-                && let Some(heard) = self.ears[receiver.index()].of(id)
+                && let Some(heard) = place.map(|place| self.ears[receiver.index()].at(place))
             {
                 open.power = if heard.dbm.is_nan() {
                     dbm(heard.power) as f32
@@ -211,7 +216,7 @@ impl Shared {
                     heard.dbm
                 };
             }
-            if let Err(why) = self.verdict(id, (burst, &waveform), receiver) {
+            if let Err(why) = self.verdict(place, (burst, &waveform), receiver) {
                 // Of the channels that it did not listen to it knows nothing.
                 if self.listens_to(receiver, burst) {
                     open.cause = why;
@@ -235,8 +240,13 @@ impl Shared {
         }
     }
 
-    /// Whether `receiver` has got a burst that ends now, or why not.
-    fn verdict(&self, id: BurstId, (burst, waveform): (&Burst, &Waveform), receiver: ActorId) -> Result<(), LossCause> {
+    /// Whether `receiver`, in whose ear it stands at `place`, has got a burst that ends now, or why not.
+    fn verdict(
+        &self,
+        place: Option<usize>,
+        (burst, waveform): (&Burst, &Waveform),
+        receiver: ActorId,
+    ) -> Result<(), LossCause> {
         if burst.cut {
             return Err(LossCause::SenderDown);
         }
@@ -244,7 +254,7 @@ impl Shared {
             return Err(LossCause::ReceiverDown);
         }
         let ear = &self.ears[receiver.index()];
-        let Some(heard) = ear.of(id) else {
+        let Some(place) = place else {
             let infrared = self.budget.infrared.is_some();
             return Err(if infrared {
                 LossCause::Occlusion
@@ -258,15 +268,19 @@ impl Shared {
         if !self.receiver.is_orthogonal() && ear.is_deaf(burst.begins, burst.ends) {
             return Err(LossCause::HalfDuplex);
         }
-        self.receiver.judge(ear, heard, (burst, waveform), receiver)
+        self.receiver.judge(ear, place, (burst, waveform), receiver)
     }
 
     /// Whether `receiver` listens on the channel of a burst: it did as it began.
+    #[inline]
     fn listens_to(&self, receiver: ActorId, burst: &Burst) -> bool {
+        self.phy.channels == 1 || self.scans(receiver, burst)
+    }
+
+    /// The same, where receivers go from channel to channel.
+    #[inline(never)]
+    fn scans(&self, receiver: ActorId, burst: &Burst) -> bool {
         let channels = u64::from(self.phy.channels);
-        if channels == 1 {
-            return true;
-        }
         let dwell = self.phy.dwell.as_nanos().max(1);
         let [phase, _] = self.scans.first_two(receiver.0, 0, 0);
         let round = dwell * channels;
@@ -284,7 +298,8 @@ impl Shared {
             return false;
         }
         let waveform = self.receiver.waveform(burst);
-        if self.verdict(id, (burst, &waveform), to).is_err() {
+        let place = self.ears[to.index()].place_of(id);
+        if self.verdict(place, (burst, &waveform), to).is_err() {
             return false;
         }
         let begins = now + answering.after;

@@ -37,8 +37,9 @@ pub(super) struct Receiver {
     /// The share of frames that nothing modelled drops.
     kept: f64,
     phy: Phy,
-    /// How its modulations survive.
+    /// How its modulations survive, and the ratio from which on none of them errs.
     tables: Tables,
+    certain: f32,
     errors: KeyedStreams,
     acknowledgements: KeyedStreams,
 }
@@ -47,6 +48,7 @@ impl Receiver {
     /// Those of `phy`, with so much noise beside their own. `orthogonal`: whether frames do not disturb each other; `latency`: how long one must have been on air
     /// before it is noticed.
     pub fn new(phy: &Phy, orthogonal: bool, latency: Span, background: f64, streams: Streams) -> Self {
+        let tables = Tables::of(phy);
         Self {
             noise: milliwatts(phy.noise) + background,
             sensitivity: milliwatts(phy.sensitivity),
@@ -57,7 +59,8 @@ impl Receiver {
             orthogonal,
             latency,
             kept: phy.infrared.map_or(1.0, |infrared| 1.0 - infrared.drop),
-            tables: Tables::of(phy),
+            certain: tables.certain(),
+            tables,
             phy: phy.clone(),
             errors: streams.keyed(ERRORS),
             acknowledgements: streams.keyed(ACKNOWLEDGEMENTS),
@@ -105,46 +108,26 @@ impl Receiver {
         heard.power > self.lock * (self.noise + others)
     }
 
-    /// Whether `robot`, which listened from the beginning to the end, understood `burst`, or why it did not.
+    /// Whether `robot`, which listened from the beginning to the end, understood `burst`, which stands at `place` in its ear, or why it did not.
     pub fn judge(
         &self,
         ear: &Ear,
-        heard: &Heard,
+        place: usize,
         (burst, waveform): (&Burst, &Waveform),
         robot: ActorId,
     ) -> Result<(), LossCause> {
+        let heard = ear.at(place);
         if self.noise == 0.0 && heard.power < self.sensitivity {
             return Err(LossCause::BelowSensitivity);
         }
-        let alone = || self.survival(waveform, burst, (heard.begins, heard.ends), heard.power / self.noise);
-        let others = ear.during(heard.channel, heard.begins, heard.ends);
-        let others = others.filter(|other| other.burst != heard.burst);
-        let disturbed = !self.orthogonal && others.clone().next().is_some();
-        if self.capture.is_none() && !self.orthogonal {
-            if heard.power <= self.lock * self.noise {
-                return Err(LossCause::BelowSensitivity);
-            }
-            if disturbed && !self.locks(ear, heard) {
-                return Err(LossCause::Collision);
-            }
+        if self.capture.is_none() && !self.orthogonal && heard.power <= self.lock * self.noise {
+            return Err(LossCause::BelowSensitivity);
         }
+        let disturbed = !self.orthogonal && ear.besides(place).next().is_some();
         let survival = if disturbed {
-            let mut sum = 0.0;
-            // From one change of the interference to the next.
-            let mut from = heard.begins;
-            while from < heard.ends {
-                let chunk = Chunk::of(from, heard.ends, &mut others.clone());
-                let drowns = |capture| chunk.frames > 0.0 && heard.power < capture * chunk.frames;
-                if self.capture.is_some_and(drowns) {
-                    return Err(LossCause::Collision);
-                }
-                let sinr = heard.power / (self.noise + chunk.frames + chunk.noise);
-                sum += self.survival(waveform, burst, (from, chunk.until), sinr);
-                from = chunk.until;
-            }
-            sum
+            self.against_others(ear, place, (burst, waveform))?
         } else {
-            alone()
+            self.alone(heard, (burst, waveform))
         };
         // Nothing can go wrong: nothing needs to be drawn.
         if survival == 0.0 && self.kept >= 1.0 {
@@ -154,6 +137,7 @@ impl Receiver {
         if drawn < self.kept * probability(survival) {
             return Ok(());
         }
+        let alone = || self.alone(heard, (burst, waveform));
         Err(if drawn < self.kept * probability(alone()) {
             LossCause::Collision
         } else if heard.power < self.sensitivity {
@@ -161,6 +145,40 @@ impl Receiver {
         } else {
             LossCause::Channel
         })
+    }
+
+    /// The logarithm of the probability that all of a frame comes through where nothing else is on air.
+    fn alone(&self, heard: &Heard, (burst, waveform): (&Burst, &Waveform)) -> f64 {
+        self.survival(waveform, burst, (heard.begins, heard.ends), heard.power / self.noise)
+    }
+
+    /// The same, where other things are.
+    #[inline(never)]
+    fn against_others(
+        &self,
+        ear: &Ear,
+        place: usize,
+        (burst, waveform): (&Burst, &Waveform),
+    ) -> Result<f64, LossCause> {
+        let heard = ear.at(place);
+        if self.capture.is_none() && !self.locks(ear, heard) {
+            return Err(LossCause::Collision);
+        }
+        let others = ear.besides(place);
+        let mut sum = 0.0;
+        // From one change of the interference to the next.
+        let mut from = heard.begins;
+        while from < heard.ends {
+            let chunk = Chunk::of(from, heard.ends, others.clone());
+            let drowns = |capture| chunk.frames > 0.0 && heard.power < capture * chunk.frames;
+            if self.capture.is_some_and(drowns) {
+                return Err(LossCause::Collision);
+            }
+            let sinr = heard.power / (self.noise + chunk.frames + chunk.noise);
+            sum += self.survival(waveform, burst, (from, chunk.until), sinr);
+            from = chunk.until;
+        }
+        Ok(sum)
     }
 
     /// Whether the receiver is on this frame, and not on one that began before: it takes the first that it notices, and stays on it to its end.
@@ -190,6 +208,9 @@ impl Receiver {
 
     /// The logarithm of the probability that all bits of a burst within a time come through at a ratio.
     fn survival(&self, waveform: &Waveform, burst: &Burst, (from, until): (SimTime, SimTime), sinr: f64) -> f64 {
+        if sinr as f32 >= self.certain {
+            return 0.0;
+        }
         if (from, until) == (burst.begins, burst.ends) {
             let all = waveform.sections().filter(|section| section.bits > 0);
             return all
@@ -252,6 +273,12 @@ impl Tables {
         Self(tables)
     }
 
+    /// The ratio from which on no bit of any of them goes wrong.
+    fn certain(&self) -> f32 {
+        let certain = self.0.iter().map(|(_, table)| table.certain());
+        certain.fold(f32::NEG_INFINITY, f32::max)
+    }
+
     /// The logarithm of the probability that a bit comes through at a ratio.
     pub fn log_survival(&self, modulation: Modulation, sinr: f64) -> f64 {
         let table = self.0.iter().find(|table| table.0 == modulation);
@@ -278,7 +305,7 @@ struct Chunk {
 
 impl Chunk {
     /// What is on air at `from`, until that changes or until `end`.
-    fn of(from: SimTime, end: SimTime, others: &mut dyn Iterator<Item = &Heard>) -> Self {
+    fn of<'a>(from: SimTime, end: SimTime, others: impl Iterator<Item = &'a Heard>) -> Self {
         let mut chunk = Self {
             until: end,
             frames: 0.0,

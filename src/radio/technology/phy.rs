@@ -136,7 +136,7 @@ impl Phy {
 
     /// The sections of a frame with so many bytes of payload, in order of time.
     pub fn sections(&self, payload: u32) -> impl Iterator<Item = Section> + Clone + use<> {
-        self.frame(payload).sections()
+        self.frame(payload).into_sections()
     }
 
     /// The acknowledgement of a frame to one robot, where the technology has any.

@@ -34,6 +34,10 @@ impl Section {
             modulation: Modulation::None,
         }
     }
+
+    fn is_there(&self) -> bool {
+        self.bits > 0 || self.airtime > Span::ZERO
+    }
 }
 
 impl Waveform {
@@ -54,8 +58,12 @@ impl Waveform {
     }
 
     /// Its sections in order of time: those that last or have bits.
-    pub fn sections(&self) -> impl Iterator<Item = Section> + Clone + use<> {
-        let is_there = |section: &Section| section.bits > 0 || section.airtime > Span::ZERO;
-        self.sections.into_iter().filter(is_there)
+    pub fn sections(&self) -> impl Iterator<Item = Section> + Clone {
+        self.sections.iter().copied().filter(Section::is_there)
+    }
+
+    /// The same, of a waveform that nobody needs any longer.
+    pub(super) fn into_sections(self) -> impl Iterator<Item = Section> + Clone {
+        self.sections.into_iter().filter(Section::is_there)
     }
 }

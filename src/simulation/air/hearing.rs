@@ -77,14 +77,14 @@ impl<P: Protocol> Air<P> {
 
     /// Tells what receivers measured of `frame`.
     fn tell_readings(&mut self, now: SimTime, frame: FrameId, observer: &mut impl Observer) {
-        if self.powers.is_empty() {
+        if P::SENSES_POWER && self.powers.is_empty() {
             self.powers.resize_with(self.inboxes.len(), Vec::new);
         }
         for reading in self.fates.readings.drain(..) {
             if !self.strays.has(reading.receiver, frame.sender, frame.first()) {
                 observer.measured(now, frame, &reading);
             }
-            if reading.received {
+            if P::SENSES_POWER && reading.received {
                 self.powers[reading.receiver.index()].push((frame, reading.power));
             }
         }
@@ -227,7 +227,7 @@ impl<P: Protocol> Air<P> {
                 let place = after.iter().position(|entry| is_it(&entry)).map(|place| next + place);
                 let place = place.or_else(|| before.iter().position(|entry| is_it(&entry)));
                 powers.push(place.map_or(f32::NAN, |place| known[place].1));
-                next = place.unwrap_or(next);
+                next = place.map_or(next, |place| place + usize::from(known[place].0.messages() == 1));
             }
             known.clear();
         }

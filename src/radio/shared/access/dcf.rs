@@ -82,7 +82,7 @@ impl Dcf {
         let mut next = way.seen;
         let since = way.seen;
         for place in station.ear.from(since) {
-            let heard = station.ear.at(place);
+            let heard = *station.ear.at(place);
             let noticed = heard.begins + timing.latency;
             let is_own = heard.power == f64::INFINITY;
             if noticed >= now && !is_own {
@@ -101,7 +101,7 @@ impl Dcf {
             if heard.ends > now {
                 over = false;
             } else if !is_own && let Some(burst) = station.bursts.get(heard.burst) {
-                let understood = station.understands(&heard, burst);
+                let understood = station.understands(place, burst);
                 if understood == Some(false) {
                     clear = heard.ends + timing.eifs;
                 } else if understood == Some(true)

@@ -15,7 +15,7 @@ mod tdma;
 pub use config::{AccessConfig, CsmaCaConfig, DcfConfig, PacedConfig};
 
 use super::burst::{Burst, Bursts};
-use super::ear::{Ear, Heard};
+use super::ear::Ear;
 use super::receiver::Receiver;
 use crate::engine::{ActorId, KeyedStreams, Purpose, SimTime, Span, Streams};
 use crate::radio::LossCause;
@@ -135,13 +135,14 @@ impl Station<'_> {
         self.draws.uniform(self.robot)
     }
 
-    /// Whether it understood a burst that has ended; `None` if it did not even notice that there was a frame.
-    pub fn understands(&mut self, heard: &Heard, burst: &Burst) -> Option<bool> {
+    /// Whether it understood a burst that has ended, which stands at `place` in its ear; `None` if it did not even notice that there was a frame.
+    pub fn understands(&mut self, place: usize, burst: &Burst) -> Option<bool> {
+        let heard = self.ear.at(place);
         if heard.is_noise || !self.receiver.detects(self.ear, heard) {
             return None;
         }
         let waveform = self.receiver.waveform(burst);
-        let verdict = self.receiver.judge(self.ear, heard, (burst, &waveform), self.robot);
+        let verdict = self.receiver.judge(self.ear, place, (burst, &waveform), self.robot);
         Some(verdict.is_ok())
     }
 
