@@ -100,7 +100,7 @@ fn compare(rounds: usize) {
 
 /// The shared radio: beside a disk where all hear each other, and by how much it grows with the swarm.
 fn over_air(rounds: usize) {
-    println!("\n802.15.4 with log-distance path loss, shadowing and Rayleigh fading, a status every 0.1 s, inline");
+    println!("\n802.15.4 with log-distance path loss, shadowing and Rician fading, a status every 0.1 s, inline");
     let line = |robots: u32, program: &str, samples: &[Sample], against: f64, of: &str| {
         let (deliveries, nanos) = (samples[0].deliveries, measure::least(samples));
         let ratio = nanos / against;

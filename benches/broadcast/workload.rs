@@ -118,7 +118,8 @@ fn air(dbm: f64) -> RadioConfig {
             ..LogDistanceConfig::default()
         }),
         shadowing: Some(ShadowingConfig::default()),
-        fading: FadingConfig::Rayleigh {
+        fading: FadingConfig::Rician {
+            k: NonNegative::new(4.0),
             doppler: NonNegative::new(0.0),
         },
         ..SharedConfig::of(TechnologyConfig::default())
