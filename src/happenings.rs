@@ -8,6 +8,10 @@ use crate::protocol::{Address, Input, MessageSize, Note, Output, Reception, Topi
 use crate::radio::{Account, Conclusion, FrameId, LossCause, Reading};
 
 mod composed;
+mod watch;
+
+pub(crate) use watch::Watching;
+pub use watch::{Vocabulary, Watch, Watcher};
 
 /// Watches a run: it is told what happens and changes nothing, but that it may [end](Self::judge) the run.
 ///

@@ -12,4 +12,4 @@ pub use crate::kind::TrialError;
 pub use parts::{FinishedTrial, Parts, PartsError};
 pub(crate) use run::run_trials;
 pub use run::{Ending, Experiment, ExperimentError, Pool};
-pub use trial::{reach, run_trial, run_trial_in, trace_trial};
+pub use trial::{reach, run_trial, run_trial_in, trace_trial, watch_trial};

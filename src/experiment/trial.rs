@@ -1,12 +1,14 @@
 //! From a scenario to the record of one of its trials.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use tokio_util::sync::CancellationToken;
 
 use crate::engine::{ActorId, Span};
+use crate::happenings::{Watch, Watcher};
 use crate::kind::{Start, Swarm, TrialError};
 use crate::metrics::TrialRecord;
+use crate::metrics::detection::StatusTrace;
 use crate::motion::deploy;
 use crate::radio::RadioKind;
 use crate::radio::Reach;
@@ -45,8 +47,24 @@ pub fn run_trial_in(
     run(setup, scenario, driver, stop)
 }
 
-/// Runs a trial as [`run_trial`] does, and follows every status of `robot` into [`TrialRecord::trace`]. Whoever is
-/// followed, the run is the same, digest and all.
+/// Runs a trial as [`run_trial`] does while `watch` is told all of it. Whoever watches, the run is the same, digest and all.
+///
+/// # Errors
+/// As [`run_trial`].
+pub fn watch_trial<W: Watch + 'static>(
+    scenario: &Scenario,
+    trial: u32,
+    watch: &Arc<Mutex<W>>,
+    stop: &CancellationToken,
+) -> Result<TrialRecord, TrialError> {
+    let setup = Setup {
+        watcher: Some(Watcher::new(Arc::clone(watch))),
+        ..setup(scenario, trial)
+    };
+    run(setup, scenario, DriverKind::Inline, stop)
+}
+
+/// Runs a trial as [`run_trial`] does, and follows every status of `robot` into [`TrialRecord::trace`], if robots send any.
 ///
 /// # Errors
 /// As [`run_trial`].
@@ -56,11 +74,14 @@ pub fn trace_trial(
     robot: ActorId,
     stop: &CancellationToken,
 ) -> Result<TrialRecord, TrialError> {
-    let setup = Setup {
-        trace: Some(robot),
-        ..setup(scenario, trial)
-    };
-    run(setup, scenario, DriverKind::Inline, stop)
+    let trace = Arc::new(Mutex::new(StatusTrace::new(robot)));
+    let mut record = watch_trial(scenario, trial, &trace, stop)?;
+    let trace = std::mem::replace(
+        &mut *trace.lock().unwrap_or_else(PoisonError::into_inner),
+        StatusTrace::new(robot),
+    );
+    record.trace = scenario.protocol.has_statuses().then_some(trace);
+    Ok(record)
 }
 
 /// Who was in range of whom in a trial, from where robots were: what its record's links are.
@@ -116,7 +137,7 @@ fn setup(scenario: &Scenario, trial: u32) -> Setup {
         metrics: scenario.metrics.clone(),
         detector: scenario.detector.clone(),
         status_interval: scenario.circumstances().status_interval,
-        trace: None,
+        watcher: None,
         mission: None,
         rumors: 0,
         completion: scenario.completion(),

@@ -17,6 +17,6 @@ mod run;
 mod setup;
 mod wakes;
 
-pub use crate::happenings::{Copy, Inbox, Observer, Sent};
+pub use crate::happenings::{Copy, Inbox, Observer, Sent, Vocabulary, Watch, Watcher};
 pub use error::RunError;
 pub use setup::{DriverKind, Finished, Setup};

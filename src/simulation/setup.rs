@@ -14,8 +14,7 @@ use super::run::{Ended, Rhythm, Run};
 use crate::engine::{ActorId, Actors, Clocks, Driver, Inline, Purpose, SimTime, Span, Streams, block_on};
 use crate::faults::{FaultConfig, Faults};
 use crate::geometry::Pose;
-use crate::happenings::Observer;
-use crate::metrics::detection::StatusTrace;
+use crate::happenings::{Observer, Vocabulary, Watcher, Watching};
 use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RunEnd, TrialRecord};
 use crate::motion::{ArenaConfig, MotionConfig, World};
 use crate::protocol::control::{ControlConfig, Phases, Rhythm as Repeated, WakeConfig};
@@ -83,8 +82,8 @@ pub struct Setup {
     pub detector: DetectorConfig,
     /// The longest pause that a robot makes between two statuses; zero if it sends none.
     pub status_interval: Span,
-    /// A robot whose statuses are to be followed one by one, into [`TrialRecord::trace`]; the run is then driven inline.
-    pub trace: Option<ActorId>,
+    /// Who watches beside the observer, whatever the protocol; the run is then driven inline.
+    pub watcher: Option<Watcher>,
     /// What counts as completion, if anything does.
     pub mission: Option<Mission>,
     /// How many rumours all robots are to know, which then is completion; 0 for none.
@@ -170,19 +169,24 @@ impl Setup {
         let recorder = Recorder::new(self.layout::<P>(swarm, medium.reach()), &self.metrics);
         let books = (recorder, Digest::new());
         let run = async {
-            match (self.trace.zip(P::STATUS), driver) {
-                // Traced or not is decided here, and not at every copy.
-                (Some((robot, topic)), _) => {
-                    let observers = (books, (StatusTrace::new(robot, topic), observer));
+            match (&self.watcher, driver) {
+                // Watched or not is decided here, and not at every copy.
+                (Some(watcher), _) => {
+                    let vocabulary = Vocabulary {
+                        topics: P::topics(&self.detector),
+                        roles: P::ROLES,
+                        status: P::STATUS,
+                    };
+                    let watch = &mut *watcher.lock();
+                    let observers = (books, (Watching { watch, vocabulary }, observer));
                     let ended = self
                         .run_with(poses, medium, Inline::new(robots), observers, stop)
                         .await?;
                     let Finished {
-                        mut record,
+                        record,
                         robots,
-                        observer: (trace, observer),
+                        observer: (_, observer),
                     } = self.finished(ended);
-                    record.trace = Some(trace);
                     Ok(Finished {
                         record,
                         robots,

@@ -1,7 +1,7 @@
 //! One robot's statuses followed one by one: who asks why it was suspected runs the trial again with this.
 
 use crate::engine::{ActorId, SimTime};
-use crate::happenings::{self, Observer, Sent};
+use crate::happenings::{self, Sent, Vocabulary, Watch};
 use crate::motion::World;
 use crate::protocol::Topic;
 use crate::radio::LossCause;
@@ -11,8 +11,8 @@ use crate::radio::LossCause;
 pub struct StatusTrace {
     /// The robot.
     pub robot: ActorId,
-    /// The topic of statuses.
-    topic: Topic,
+    /// The topic of statuses, once the run has begun.
+    topic: Option<Topic>,
     /// Its statuses, in the order in which it sent them.
     pub statuses: Vec<Status>,
 }
@@ -61,23 +61,21 @@ impl Status {
 }
 
 impl StatusTrace {
-    /// Nothing sent yet by `robot`, whose statuses are its messages on `topic`.
+    /// Nothing sent yet by `robot`.
     #[must_use]
-    pub fn new(robot: ActorId, topic: Topic) -> Self {
+    pub fn new(robot: ActorId) -> Self {
         Self {
             robot,
-            topic,
+            topic: None,
             statuses: Vec::new(),
         }
     }
 
     #[inline]
     fn follows(&self, copy: &happenings::Copy) -> bool {
-        copy.sender == self.robot && copy.topic == self.topic
+        copy.sender == self.robot && Some(copy.topic) == self.topic
     }
 
-    // What it does is kept apart from what it asks, which every copy of every frame runs through. So also below.
-    #[cold]
     fn fate(&mut self, sequence: u32, receiver: ActorId, fate: CopyFate) {
         let Some(status) = self.status(sequence) else { return };
         match status.copies.iter_mut().find(|copy| copy.receiver == receiver) {
@@ -94,7 +92,6 @@ impl StatusTrace {
         }
     }
 
-    #[cold]
     fn read(&mut self, sequence: u32, receiver: ActorId, read: Option<SimTime>) {
         let Some(status) = self.status(sequence) else { return };
         if let Some(copy) = status.copies.iter_mut().find(|copy| copy.receiver == receiver) {
@@ -110,12 +107,13 @@ impl StatusTrace {
     }
 }
 
-impl Observer for StatusTrace {
-    /// What becomes of a copy is told in its order, and copies are independent of each other.
-    const IN_ORDER: bool = false;
+impl Watch for StatusTrace {
+    fn begin(&mut self, vocabulary: &Vocabulary, _: &World) {
+        self.topic = vocabulary.status;
+    }
 
     fn sent(&mut self, message: &Sent<'_>) {
-        if message.sender == self.robot && message.topic == self.topic {
+        if message.sender == self.robot && Some(message.topic) == self.topic {
             self.statuses.push(Status {
                 sequence: message.sequence,
                 sent_at: message.at,
@@ -136,24 +134,18 @@ impl Observer for StatusTrace {
         }
     }
 
-    #[allow(clippy::inline_always)]
-    #[inline(always)]
     fn arrives(&mut self, copy: &happenings::Copy, at: SimTime) {
         if self.follows(copy) {
             self.fate(copy.sequence, copy.receiver, CopyFate::Arrives(at));
         }
     }
 
-    #[allow(clippy::inline_always)]
-    #[inline(always)]
     fn lost(&mut self, copy: &happenings::Copy, cause: LossCause, _: SimTime) {
         if self.follows(copy) {
             self.fate(copy.sequence, copy.receiver, CopyFate::Lost(cause));
         }
     }
 
-    #[allow(clippy::inline_always)]
-    #[inline(always)]
     fn delivered(&mut self, copy: &happenings::Copy, _: SimTime, read: Option<SimTime>) {
         if self.follows(copy) {
             self.read(copy.sequence, copy.receiver, read);
