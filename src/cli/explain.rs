@@ -1,22 +1,17 @@
 //! `desim explain`: runs one finished trial again and tells why a robot was suspected.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-
-use clap::Args;
-use tokio_util::sync::CancellationToken;
+use std::path::PathBuf;
 
 use super::failure::Failure;
-use super::interrupt;
+use super::finished_trial::{FinishedTrial, refuse};
 use super::output;
 use super::shown::Format;
 use crate::engine::ActorId;
 use crate::experiment::trace_trial;
-use crate::export::{self, Contents, Folder, FolderError, Manifest};
-use crate::metrics::TrialRecord;
+use crate::export;
 use crate::report::Explanation;
-use crate::scenario::{Scenario, parse, to_ron};
-use crate::text::shown;
+use clap::Args;
 
 /// What `desim explain --help` says.
 pub const LONG_ABOUT: &str = "\
@@ -53,15 +48,14 @@ pub struct ExplainArguments {
 /// # Panics
 /// Never: what is asked for is traced.
 pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
-    let manifest = results(&arguments.dir)?;
-    let scenario = scenario(&manifest, &arguments.dir)?;
+    let finished = FinishedTrial::of(&arguments.dir, arguments.trial)?;
+    let scenario = &finished.scenario;
     if !scenario.protocol.has_statuses() {
         return refuse(format!(
             "robots that run {} send no statuses: nobody watches over them, and nobody is suspected",
             scenario.protocol.name()
         ));
     }
-    let digest = recorded_digest(&manifest, arguments)?;
     if arguments.robot >= scenario.swarm.robots {
         let robots = scenario.swarm.robots;
         return refuse(format!(
@@ -70,16 +64,9 @@ pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
             robots - 1
         ));
     }
-    let record = run_again(&scenario, arguments)?;
-    let now = format!("{:032x}", record.digest);
-    if now != digest {
-        return refuse(format!(
-            "this desim does not run trial {} as the results have it (digest {digest} there, {now} now; desim {} there, {} now): what it would tell is not what happened.\nExplain the results with the version that made them, or make them again with --force.",
-            arguments.trial,
-            manifest.version,
-            env!("CARGO_PKG_VERSION")
-        ));
-    }
+    let record = finished.again("tell", |stop| {
+        trace_trial(scenario, arguments.trial, ActorId(arguments.robot), stop)
+    })?;
     let mut explanation = Explanation::of(&scenario.name, &record).expect("the robot was traced");
     explanation.rule = scenario.detector.words();
     let chosen = chosen(&explanation, arguments)?;
@@ -90,72 +77,6 @@ pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
         (Format::Text, chosen) => out.write_all(explanation.text(chosen, output::style(&io::stdout())).as_bytes())?,
     }
     Ok(out.flush()?)
-}
-
-fn refuse<T>(message: impl Into<String>) -> Result<T, Failure> {
-    Err(Failure::Input(format!("error: {}", message.into())))
-}
-
-/// The manifest of the finished results in `dir`, all of which are as they were written.
-fn results(dir: &Path) -> Result<Manifest, Failure> {
-    let shown = shown(dir);
-    if !dir.exists() {
-        return refuse(format!("there is no folder {shown}"));
-    }
-    let folder = Folder::new(dir.to_owned());
-    match folder.contents() {
-        Ok(Contents::Results(manifest)) if manifest.finished => {
-            folder.held(&manifest, &[])?;
-            Ok(manifest)
-        }
-        Ok(Contents::Results(_)) => refuse(format!(
-            "the results in {shown} are unfinished: run the same `desim scenario` command to its end first"
-        )),
-        Ok(Contents::Nothing) | Err(FolderError::Foreign { .. } | FolderError::NotAFolder(_)) => {
-            refuse(format!("{shown} holds no results of desim"))
-        }
-        Err(error) => Err(error.into()),
-    }
-}
-
-/// The scenario that `manifest` holds.
-fn scenario(manifest: &Manifest, dir: &Path) -> Result<Scenario, Failure> {
-    let place = shown(&dir.join("manifest.json"));
-    let scenario: Scenario = serde_json::from_value(manifest.scenario.clone()).or_else(|error| {
-        refuse(format!(
-            "the scenario in {place} is of another version ({error}; desim {} there, {} now)",
-            manifest.version,
-            env!("CARGO_PKG_VERSION")
-        ))
-    })?;
-    // Somebody may have edited it: it must hold as any scenario file must.
-    Ok(parse(&place, &to_ron(&scenario), &[])?)
-}
-
-/// The digest that the trial had.
-fn recorded_digest(manifest: &Manifest, arguments: &ExplainArguments) -> Result<String, Failure> {
-    let trial = manifest.trials.iter().find(|entry| entry.trial == arguments.trial);
-    let Some(trial) = trial else {
-        return refuse(format!(
-            "there is no trial {}: {} has trials 0 to {}",
-            arguments.trial,
-            shown(&arguments.dir),
-            manifest.trials.len().saturating_sub(1)
-        ));
-    };
-    Ok(trial.digest.clone())
-}
-
-fn run_again(scenario: &Scenario, arguments: &ExplainArguments) -> Result<TrialRecord, Failure> {
-    let stop = CancellationToken::new();
-    interrupt::cancels(&stop).map_err(|error| Failure::other(&error))?;
-    trace_trial(scenario, arguments.trial, ActorId(arguments.robot), &stop).map_err(|error| {
-        if stop.is_cancelled() {
-            Failure::Interrupted("interrupted".to_owned())
-        } else {
-            Failure::other(&error)
-        }
-    })
 }
 
 /// The number of the suspicion asked for, if one was and there is one.

@@ -14,12 +14,14 @@ pub mod check;
 pub mod compare;
 pub mod explain;
 mod failure;
+mod finished_trial;
 mod interrupt;
 pub mod log;
 pub mod new;
 mod output;
 mod page_file;
 mod progress;
+pub mod replay;
 pub mod report;
 pub mod scenario;
 pub mod schema;
@@ -40,6 +42,7 @@ use explain::ExplainArguments;
 use failure::FAULTY_INPUT;
 pub use failure::Failure;
 use new::NewArguments;
+use replay::ReplayArguments;
 use report::ReportArguments;
 use scenario::ScenarioArguments;
 use shown::Format;
@@ -128,6 +131,9 @@ pub enum Command {
     /// Tell in words and times why a robot was suspected in a finished trial
     #[command(long_about = explain::LONG_ABOUT)]
     Explain(ExplainArguments),
+    /// Make a page on which a finished trial can be watched
+    #[command(long_about = replay::LONG_ABOUT)]
+    Replay(ReplayArguments),
     /// Hold every model against its closed form on this machine
     #[command(long_about = validate::LONG_ABOUT)]
     Validate(ValidateArguments),
@@ -199,6 +205,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
         }
         Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
         Command::New(arguments) => new::run(&arguments, &mut out),
         Command::Schema { study } => Ok(schema::schema(study, &mut out)?),

@@ -21,13 +21,13 @@ pub enum Place {
     Output,
 }
 
-/// Writes a page to `file`, and says so.
+/// Writes a page to `file`, and says what it `holds`.
 ///
 /// A file is replaced once the page is whole; a link stays one. A pipe or a device, which has nothing to replace, is written to.
 ///
 /// # Errors
 /// If something else is there, or the file system refuses.
-pub fn write(file: &Path, page: &str) -> Result<Place, Failure> {
+pub fn write(file: &Path, page: &str, holds: &str) -> Result<Place, Failure> {
     let failed = |error: io::Error| Failure::Other(format!("error: cannot write {}: {error}", shown(file)));
     let written = match fs::metadata(file) {
         Ok(there) if is_stdout(&there) => {
@@ -64,7 +64,7 @@ pub fn write(file: &Path, page: &str) -> Result<Place, Failure> {
         Err(error) => Err(error),
     };
     written.map_err(failed)?;
-    say(&format!("{} has the charts", shown(file)));
+    say(&format!("{} {holds}", shown(file)));
     Ok(Place::File)
 }
 

@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::output::say;
 use super::page_file::{self, Place};
 use super::shown::{Finished, Format, print_comparison};
-use crate::export::{Folder, Manifest, PAGE, Results, StudyFolder, WriteError};
+use crate::export::{Folder, Manifest, PAGE, REPLAY, Results, StudyFolder, WriteError};
 use crate::report::{PageInput, page, study_page};
 use crate::text::shown;
 
@@ -93,7 +93,7 @@ fn report_study(folder: &StudyFolder, arguments: &ReportArguments) -> Result<(),
     let comparison = folder.finished(&manifest)?;
     let html = study_page(&comparison, &manifest.made_by());
     let place = match &arguments.out {
-        Some(file) => page_file::write(file, &html)?,
+        Some(file) => page_file::write(file, &html, "has the charts")?,
         None => kept(
             folder.path(),
             folder.keep_page(&manifest, &html).map_err(WriteError::from),
@@ -130,6 +130,7 @@ fn question(results: &Results) -> Option<String> {
 /// to standard output, where no report may follow it.
 fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Option<Vec<String>>, Failure> {
     let (dir, manifest) = &results.sources[0];
+    let replay = arguments.out.is_none() && dir.join(REPLAY).is_file();
     let html = || {
         page(&PageInput {
             question: question(results).as_deref(),
@@ -139,13 +140,14 @@ fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Option<V
             records: &results.records,
             summary: &results.summary,
             made_by: &manifest.made_by(),
+            replay: replay.then_some(REPLAY),
         })
     };
     let names = |manifest: &Manifest| manifest.files.keys().cloned().collect();
     match (&arguments.out, results.sources.len()) {
         (Some(file), many) => {
             let files = if many == 1 { names(manifest) } else { Vec::new() };
-            Ok((page_file::write(file, &html())? == Place::File).then_some(files))
+            Ok((page_file::write(file, &html(), "has the charts")? == Place::File).then_some(files))
         }
         (None, 1) => {
             let kept_page = Folder::new(dir.clone()).keep_page(manifest, &html());

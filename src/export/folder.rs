@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::Tables;
-use super::files::{MANIFEST, PAGE, PICTURES, SUMMARY};
+use super::files::{MANIFEST, PAGE, PICTURES, REPLAY, SUMMARY};
 use super::held::{FileEntry, document, held, measure, sealed, unseal};
 use super::manifest::Manifest;
 use super::place::{FolderError, Place, WriteError, failed, gone};
@@ -217,13 +217,17 @@ impl Folder {
 
 /// Whether desim gives a file of results this name.
 fn is_own(name: &str) -> bool {
+    let is_number = |number: &str| !number.is_empty() && number.bytes().all(|digit| digit.is_ascii_digit());
     let is_picture = || {
         let number = |kind: &str| name.strip_prefix(kind)?.strip_prefix('_')?.strip_suffix(".svg");
-        let is_number = |number: &str| !number.is_empty() && number.bytes().all(|digit| digit.is_ascii_digit());
         PICTURES.iter().filter_map(|kind| number(kind)).any(is_number)
     };
+    let is_replay = || {
+        let number = name.strip_prefix("replay-").and_then(|name| name.strip_suffix(".html"));
+        name == REPLAY || number.is_some_and(is_number)
+    };
     let is_table = Tables::FILES.contains(&name) || Tables::OPTIONAL.contains(&name);
-    [MANIFEST, SUMMARY, PAGE].contains(&name) || is_table || is_picture()
+    [MANIFEST, SUMMARY, PAGE].contains(&name) || is_table || is_picture() || is_replay()
 }
 
 /// Holds the page of charts in `dir`, if there is one, against what was written.

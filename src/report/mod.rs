@@ -12,6 +12,8 @@ mod layout;
 mod missed;
 mod number;
 mod preflight;
+#[cfg(feature = "command")]
+mod replay;
 mod spread;
 mod surprises;
 mod terminal;
@@ -24,5 +26,7 @@ pub use html::{PAGE_MARK, PageInput, page, study_page};
 pub use layout::message;
 pub use missed::Asked;
 pub use preflight::preflight;
+#[cfg(feature = "command")]
+pub use replay::{Film, ReplayInput, replay};
 pub use terminal::{Input, Speed, terminal};
 pub use validation::validation;

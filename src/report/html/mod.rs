@@ -7,7 +7,7 @@
 
 mod air;
 mod bandwidth;
-mod chart;
+pub(super) mod chart;
 mod connectivity;
 mod data;
 mod detection;
@@ -53,6 +53,8 @@ pub struct PageInput<'a> {
     pub summary: &'a Summary,
     /// The version that ran them.
     pub made_by: &'a str,
+    /// The page beside it on which trial 0 is watched, if there is one.
+    pub replay: Option<&'a str>,
 }
 
 impl PageInput<'_> {

@@ -43,7 +43,10 @@ pub fn page(input: &PageInput) -> String {
             h1 { (input.scenario.name) }
             @if let Some(question) = input.question { p class="question" { (question) } }
             p class="ran" { (ran(input)) }
-            nav { @for section in &sections { a href={ "#" (section.id) } { (section.title) } } }
+            nav {
+                @for section in &sections { a href={ "#" (section.id) } { (section.title) } }
+                @if let Some(replay) = input.replay { a href=(replay) { "Watch trial 0" } }
+            }
         }
         main {
             section id="found" {

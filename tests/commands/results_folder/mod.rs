@@ -11,5 +11,6 @@ mod harm;
 mod hostile;
 mod page;
 mod read_back;
+mod replay;
 mod report;
 mod streams;

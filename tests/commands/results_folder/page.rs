@@ -24,6 +24,7 @@ fn page_of(records: &[TrialRecord], topics: &[&str], roles: &[&str], question: &
         records,
         summary: &Summary::of("made-up", topics, roles, records),
         made_by: "desim 9.9",
+        replay: None,
     })
 }
 
