@@ -168,16 +168,17 @@ impl Setup {
         let medium = self.medium(swarm);
         let recorder = Recorder::new(self.layout::<P>(swarm, medium.reach()), &self.metrics);
         let books = (recorder, Digest::new());
+        // Held for all of the run, and alone.
+        let mut watcher = self.watcher.as_ref().map(Watcher::lock);
         let run = async {
-            match (&self.watcher, driver) {
+            match (watcher.as_deref_mut(), driver) {
                 // Watched or not is decided here, and not at every copy.
-                (Some(watcher), _) => {
+                (Some(watch), _) => {
                     let vocabulary = Vocabulary {
                         topics: P::topics(&self.detector),
                         roles: P::ROLES,
                         status: P::STATUS,
                     };
-                    let watch = &mut *watcher.lock();
                     let observers = (books, (Watching { watch, vocabulary }, observer));
                     let ended = self
                         .run_with(poses, medium, Inline::new(robots), observers, stop)

@@ -9,7 +9,7 @@ use crate::metrics::{FaultKind, Outcome, TrialRecord};
 use crate::radio::LossCause;
 
 /// So many a page lists.
-const MOST_EVENTS: usize = 50_000;
+const MOST_EVENTS: usize = 20_000;
 
 /// A happening.
 #[derive(Debug, Serialize)]
@@ -67,7 +67,7 @@ pub fn events(record: &TrialRecord, folder: &str) -> (Vec<Event>, u64) {
     }
     let mut numbers: BTreeMap<u32, usize> = BTreeMap::new();
     let mut left_out = 0;
-    for suspicion in record.detection.suspicions.iter() {
+    for suspicion in &record.detection.suspicions {
         let number = numbers.entry(suspicion.subject.0).or_default();
         *number += 1;
         if events.len() < MOST_EVENTS {

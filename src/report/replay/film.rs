@@ -40,19 +40,19 @@ pub const UNDER_WAY: u8 = u8::MAX;
 #[derive(Debug, Default)]
 pub struct Film {
     /// Names of topics and roles.
-    pub vocabulary: Vocabulary,
+    pub(super) vocabulary: Vocabulary,
     /// Places of all robots, robot after robot, instant after instant, in [quanta](QUANTUM_M).
-    pub places: Vec<[i32; 2]>,
+    pub(super) places: Vec<[i32; 2]>,
     /// From one instant to the next.
-    pub every: Span,
+    pub(super) every: Span,
     /// Changes of role, in order of time.
-    pub roles: Vec<(SimTime, ActorId, u8)>,
+    pub(super) roles: Vec<(SimTime, ActorId, u8)>,
     /// Messages in order of time.
-    pub messages: Vec<Message>,
+    pub(super) messages: Vec<Message>,
     /// Of how many messages each is one: the others are left out.
-    pub one_of: u64,
+    pub(super) one_of: u64,
     /// What became of their copies, as it was told.
-    pub copies: Vec<CopyFate>,
+    pub(super) copies: Vec<CopyFate>,
     room: Room,
     tick: Span,
     ticks: u64,
@@ -66,7 +66,7 @@ pub struct Film {
 
 /// A message.
 #[derive(Clone, Copy, Debug)]
-pub struct Message {
+pub(super) struct Message {
     /// Its number among all, from 0.
     number: u64,
     pub at: SimTime,
@@ -78,7 +78,7 @@ pub struct Message {
 
 /// What became of a copy.
 #[derive(Clone, Copy, Debug)]
-pub struct CopyFate {
+pub(super) struct CopyFate {
     /// Place of its message.
     pub message: u32,
     pub receiver: ActorId,
@@ -89,22 +89,22 @@ pub struct CopyFate {
 
 impl Film {
     /// How many instants there are.
-    pub fn instants(&self) -> usize {
+    pub(super) fn instants(&self) -> usize {
         self.places.len() / self.robots.max(1)
     }
 
     /// Whether places between those that are there were left out.
-    pub fn is_thinned(&self) -> bool {
+    pub(super) fn is_thinned(&self) -> bool {
         self.stride > 1
     }
 
     /// How many robots.
-    pub fn robots(&self) -> usize {
+    pub(super) fn robots(&self) -> usize {
         self.robots
     }
 
     /// Places at the end, unless they are there already.
-    pub fn close(&mut self, end: SimTime, places: impl Iterator<Item = Vec2>) {
+    pub(super) fn close(&mut self, end: SimTime, places: impl Iterator<Item = Vec2>) {
         let last = self.every.as_nanos() * (self.instants().max(1) as u64 - 1);
         if end.as_nanos() > last {
             self.places.extend(places.map(quantised));

@@ -120,13 +120,20 @@ fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {
         "messages": {
             "count": film.messages.len(),
             "copies": film.copies.len(),
-            "note": (film.one_of > 1).then(|| format!("One message of {} is shown.", number::count(film.one_of))),
+            "note": left_out_words(film, left_out),
         },
         "faults": events::faults(record),
         "series": series(record),
         "events": events,
-        "events_left_out": left_out,
     })
+}
+
+/// That messages are thinned out, and events cut off, if they are.
+fn left_out_words(film: &Film, events: u64) -> Option<String> {
+    let messages = (film.one_of > 1).then(|| format!("One message of {} is shown.", number::count(film.one_of)));
+    let events = (events > 0).then(|| format!("{} later suspicions are not listed.", number::count(events)));
+    let words: Vec<String> = messages.into_iter().chain(events).collect();
+    (!words.is_empty()).then(|| words.join(" "))
 }
 
 fn outcome(record: &TrialRecord) -> String {

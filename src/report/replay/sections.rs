@@ -8,11 +8,15 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde_json::{Map, Value, json};
 
-use super::film::Film;
+use super::film::{CopyFate, Film};
 use super::links::Toggles;
+use crate::engine::Span;
 
 /// Sections begin at multiples of this, as typed arrays want it.
 const ALIGNMENT: usize = 8;
+
+/// In so many of these a copy is later than its message: up to 6.5 s, and no more where it was longer on its way.
+const LATE: Span = Span::from_nanos(100_000);
 
 /// Lists of numbers, one after another.
 #[derive(Debug, Default)]
@@ -96,7 +100,11 @@ impl Sections {
         self.words("msg_first", (0..=messages.len()).map(first));
         self.words("copy_receiver", copies.iter().map(|copy| copy.receiver.0));
         self.put("copy_fate", copies.iter().map(|copy| [copy.fate]));
-        self.words("copy_t", copies.iter().map(|copy| (copy.at.as_secs() as f32).to_bits()));
+        let late = |copy: &&CopyFate| {
+            let sent = messages[copy.message as usize].at;
+            u16::try_from(copy.at.since(sent).as_nanos() / LATE.as_nanos()).unwrap_or(u16::MAX)
+        };
+        self.put("copy_late", copies.iter().map(late).map(u16::to_le_bytes));
     }
 
     fn words(&mut self, name: &str, words: impl Iterator<Item = u32>) {

@@ -62,14 +62,26 @@ async function unpack() {
   const Step = meta.frames.width === 2 ? Int16Array : Int32Array;
   for (const name of ['x0', 'y0']) column(name, Int32Array);
   for (const name of ['dx', 'dy']) column(name, Step);
-  for (const name of ['role_t', 'msg_t', 'copy_t']) column(name, Float32Array);
+  for (const name of ['role_t', 'msg_t']) column(name, Float32Array);
   for (const name of ['role', 'msg_topic', 'copy_fate']) column(name, Uint8Array);
   for (const name of ['role_robot', 'msg_sender', 'msg_bytes', 'msg_first', 'copy_receiver', 'toggle_first', 'toggle_a', 'toggle_b']) {
     column(name, Uint32Array);
   }
+  column('copy_late', Uint16Array);
+  columns.copy_t = arrivals();
   if (columns.x0.length !== robots || columns.dx.length !== robots * steps) {
     throw new Error('The data of this page do not fit its description.');
   }
+}
+
+/** When each copy arrived or was lost: what is stored is how long after its message, in tenths of a millisecond. */
+function arrivals() {
+  const { msg_t, msg_first, copy_late } = columns;
+  const times = new Float32Array(copy_late.length);
+  for (let message = 0; message < msg_t.length; message++) {
+    for (let copy = msg_first[message]; copy < msg_first[message + 1]; copy++) times[copy] = msg_t[message] + copy_late[copy] * 1e-4;
+  }
+  return times;
 }
 
 /** The time of frame i. The last frame is at the end of the run, even where that is not a whole number of frames. */
