@@ -388,7 +388,7 @@ def main() -> int:
                 rate, found = drive(context, path, data, width, pictures)
                 context.close()
                 wrong = wrong or bool(found)
-                print(f"{path.name}, {width}: {data.meta['robots']} robots: {rate:.0f} frames a second, {len(found)} faults", flush=True)
+                print(f"{path.resolve().parent.name}/{path.name}, {width}: {data.meta['robots']} robots: {rate:.0f} frames a second, {len(found)} faults", flush=True)
                 for fault in found:
                     print(f"  {fault}", flush=True)
         browser.close()
