@@ -15,7 +15,8 @@ pub fn section(page: &mut Page, summary: &Summary) {
     let roles: Vec<_> = roles
         .map(|(role, failures)| format!("{role} {}", count(*failures)))
         .collect();
-    let roles = if roles.is_empty() {
+    // Where all robots have one role, there is nothing to tell apart.
+    let roles = if roles.is_empty() || faults.by_role.0.len() == 1 {
         String::new()
     } else {
         format!("; in all trials: {}", roles.join(", "))

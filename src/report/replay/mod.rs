@@ -181,7 +181,9 @@ fn series(record: &TrialRecord) -> Vec<Value> {
         .collect();
     let (times, rates): (Vec<f64>, Vec<f64>) = entries.into_iter().unzip();
     all.push(json!({"name": "bytes sent", "unit": "B/s", "t": times, "v": rates}));
-    all.retain(|series| series["t"].as_array().is_some_and(|times| times.len() > 1));
+    // What always has one value needs no chart.
+    let varies = |values: &Vec<Value>| values.iter().any(|value| *value != values[0]);
+    all.retain(|series| series["v"].as_array().is_some_and(varies));
     all
 }
 
