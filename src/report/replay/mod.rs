@@ -66,12 +66,12 @@ pub fn replay(input: &ReplayInput, mut film: Film) -> String {
     meta["sections"] = sections;
     let title = format!("{}, trial {}", input.scenario.name, record.trial);
     PAGE.replacen("<head>", &format!("<head>\n{PAGE_MARK}"), 1)
-        .replacen("{{title}}", &escaped(&title), 1)
         .replacen("{{style}}", STYLE, 1)
         .replacen("{{script}}", &SCRIPTS.join("\n"), 1)
         .replacen("{{data}}", &data, 1)
-        // What others wrote comes last: nothing is put into it.
+        // What others wrote comes last, from the end on: nothing is put into it.
         .replacen("{{meta}}", &meta.to_string().replace('<', "\\u003c"), 1)
+        .replacen("{{title}}", &escaped(&title), 1)
 }
 
 fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {

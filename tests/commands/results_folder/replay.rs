@@ -50,7 +50,7 @@ impl Page {
         let reach = reach(scenario, 0);
         let input = ReplayInput {
             scenario,
-            question: Some("</script> & co"),
+            question: Some("</script> & co {{title}}{{data}}"),
             record: &record,
             is_disk: matches!(reach, Reach::Disk(_)),
             reach: &reach,
@@ -232,10 +232,9 @@ fn faults_and_suspicions_are_events_and_lead_to_their_causes() {
         "{detail}"
     );
     assert_eq!(page.meta["faults"][0]["what"], "crash");
-    assert!(
-        !page.html[..page.html.len() / 2].contains("</script> & co"),
-        "a name is a name"
-    );
+    assert_eq!(page.meta["question"], "</script> & co {{title}}{{data}}");
+    assert!(!page.html.contains("</script> &"), "what others wrote ends no script");
+    assert!(page.html.contains("<title>moving, trial 0</title>"));
 }
 
 #[test]
