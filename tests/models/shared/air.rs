@@ -236,3 +236,29 @@ fn a_disk_radio_has_none_of_it() {
     let summary = serde_json::to_value(summary).unwrap();
     assert!(summary.get("radio").is_none() && summary.get("goodput_bps").is_none());
 }
+
+/// A frame is lost on whoever could not hear all of it: also where it hears again before the frame ends. Frames follow each other without a pause, so that
+/// each time of 0.3 ms lies in one frame of 1.184 ms, or, one time in four, in two.
+#[test]
+fn a_receiver_that_was_deaf_for_a_part_of_a_frame_has_not_got_it() {
+    let deaf: Vec<String> = (1..=20)
+        .map(|time| {
+            format!(
+                "Deaf(robots: [1], at: {:?}, lasts: For(0.0003))",
+                f64::from(time) * 0.041_7
+            )
+        })
+        .collect();
+    let place = format!("{PAIR} faults: [{}],", deaf.join(", "));
+    let traffic = "when: Saturated, payload: 20, senders: Given([0])";
+    let scenario = scenario(1.0, traffic, &place, &format!("{IEEE802154}, access: None"));
+    for record in runs(&scenario, 2) {
+        let fates = fates(&record);
+        let missed = fates.lost[LossCause::ReceiverDown as usize];
+        assert!((20..=32).contains(&missed), "{missed}");
+        assert!(
+            fates.delivered > 600 && fates.delivered + fates.in_flight + missed == fates.offered,
+            "{fates:?}"
+        );
+    }
+}
