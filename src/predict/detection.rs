@@ -45,10 +45,8 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
     let ends = ends(scene, detector.silence());
     let neighbours = preflight.get("degree").map(|degree| degree.value);
     let reading = Reading::of(scene, &detector, radio.loss.chain(range, range), neighbours);
-    let nfd_s = match scene.scenario.detector {
-        DetectorConfig::NfdS(_) => "; NFD-S: TO = η + δ − d",
-        _ => "",
-    };
+    let is_nfd_s = matches!(scene.scenario.detector, DetectorConfig::NfdS(_));
+    let nfd_s = if is_nfd_s { "; NFD-S: TO = η + δ − d" } else { "" };
     let mut push = |name, what, value, unit, accuracy, formula, assumes: &str| {
         preflight.predictions.push(Prediction {
             name,
@@ -84,15 +82,19 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
         );
         // Long mistakes are the likelier to be cut off by the end.
         let varies = (scene.interval_s() * excess / rate).powi(2) / scene.duration_s;
-        push(
-            "mistake_duration_s",
-            "duration of a mistake",
-            share / rate + reading.mean,
-            "s",
-            varies + reading.accuracy,
-            model.duration,
-            "until the observer reads the next status",
-        );
+        let duration = share / rate + reading.mean;
+        // Of mistakes as rare as the last digits of a share it is all rounding, and may come out negative.
+        if duration >= 0.0 {
+            push(
+                "mistake_duration_s",
+                "duration of a mistake",
+                duration,
+                "s",
+                varies + reading.accuracy,
+                model.duration,
+                "until the observer reads the next status",
+            );
+        }
     }
     // Where nearly all time is mistaken, the next mistake begins before the end of one is read.
     let mistaken = (share + rate * reading.mean).min(1.0);
