@@ -3,6 +3,8 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
+use clap::Args;
+
 use super::failure::Failure;
 use super::finished_trial::{FinishedTrial, refuse};
 use super::output;
@@ -11,7 +13,6 @@ use crate::engine::ActorId;
 use crate::experiment::trace_trial;
 use crate::export;
 use crate::report::Explanation;
-use clap::Args;
 
 /// What `desim explain --help` says.
 pub const LONG_ABOUT: &str = "\
@@ -64,8 +65,8 @@ pub fn run(arguments: &ExplainArguments) -> Result<(), Failure> {
             robots - 1
         ));
     }
-    let record = finished.again("tell", |stop| {
-        trace_trial(scenario, arguments.trial, ActorId(arguments.robot), stop)
+    let (record, ()) = finished.again("tell", |stop| {
+        trace_trial(scenario, arguments.trial, ActorId(arguments.robot), stop).map(|record| (record, ()))
     })?;
     let mut explanation = Explanation::of(&scenario.name, &record).expect("the robot was traced");
     explanation.rule = scenario.detector.words();

@@ -1,18 +1,15 @@
-//! A finished trial that is run once more: what `explain`, `replay` and `trace` begin with.
+//! A finished trial that is run once more: what `explain` and `replay` begin with.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
 
 use tokio_util::sync::CancellationToken;
 
 use super::failure::Failure;
 use super::interrupt;
-use crate::experiment::watch_trial;
 use crate::export::{Contents, Folder, FolderError, Manifest};
 use crate::kind::TrialError;
 use crate::metrics::TrialRecord;
 use crate::scenario::{Scenario, parse, to_ron};
-use crate::simulation::Watch;
 use crate::text::shown;
 
 /// A trial of finished results.
@@ -47,26 +44,18 @@ impl FinishedTrial {
         })
     }
 
-    /// Runs it again while `watch` is told all of it.
+    /// Runs it again by `run`, which also answers what it has gathered.
     ///
     /// # Errors
     /// If it does not reach its end, or is not what the results have: `tells` says what would have been made of it.
-    pub fn watched<W: Watch + 'static>(&self, watch: &Arc<Mutex<W>>, tells: &str) -> Result<TrialRecord, Failure> {
-        self.again(tells, |stop| watch_trial(&self.scenario, self.trial, watch, stop))
-    }
-
-    /// Runs it again by `run`.
-    ///
-    /// # Errors
-    /// As [`watched`](Self::watched).
-    pub fn again(
+    pub fn again<T>(
         &self,
         tells: &str,
-        run: impl FnOnce(&CancellationToken) -> Result<TrialRecord, TrialError>,
-    ) -> Result<TrialRecord, Failure> {
+        run: impl FnOnce(&CancellationToken) -> Result<(TrialRecord, T), TrialError>,
+    ) -> Result<(TrialRecord, T), Failure> {
         let stop = CancellationToken::new();
         interrupt::cancels(&stop).map_err(|error| Failure::other(&error))?;
-        let record = run(&stop).map_err(|error| {
+        let (record, gathered) = run(&stop).map_err(|error| {
             if stop.is_cancelled() {
                 Failure::Interrupted("interrupted".to_owned())
             } else {
@@ -75,7 +64,7 @@ impl FinishedTrial {
         })?;
         let now = format!("{:032x}", record.digest);
         if now == self.digest {
-            return Ok(record);
+            return Ok((record, gathered));
         }
         refuse(format!(
             "this desim does not run trial {} as the results have it (digest {} there, {now} now; desim {} there, {} now): what it would {tells} is not what happened.\n{} the results with the version that made them, or make them again with --force.",

@@ -21,13 +21,13 @@ pub enum Place {
     Output,
 }
 
-/// Writes a page to `file`, and says what it `holds`.
+/// Writes a page, usually called `name`, to `file`, and says what it `holds`.
 ///
 /// A file is replaced once the page is whole; a link stays one. A pipe or a device, which has nothing to replace, is written to.
 ///
 /// # Errors
 /// If something else is there, or the file system refuses.
-pub fn write(file: &Path, page: &str, holds: &str) -> Result<Place, Failure> {
+pub fn write(file: &Path, page: &str, name: &str, holds: &str) -> Result<Place, Failure> {
     let failed = |error: io::Error| Failure::Other(format!("error: cannot write {}: {error}", shown(file)));
     let written = match fs::metadata(file) {
         Ok(there) if is_stdout(&there) => {
@@ -38,13 +38,13 @@ pub fn write(file: &Path, page: &str, holds: &str) -> Result<Place, Failure> {
             return Err(Failure::Input(format!(
                 "error: {} is a folder: give a file, such as --out {}",
                 shown(file),
-                shown(&file.join(crate::export::PAGE))
+                shown(&file.join(name))
             )));
         }
         Ok(there) if there.is_file() => {
             if !is_page(file).map_err(failed)? {
                 return Err(Failure::Input(format!(
-                    "error: {} is no report of desim: choose another file with --out",
+                    "error: {} is no page of desim: choose another file with --out",
                     shown(file)
                 )));
             }

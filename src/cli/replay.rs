@@ -1,16 +1,14 @@
 //! `desim replay`: runs one finished trial again and makes a page on which it can be watched.
 
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
 
 use clap::Args;
 
 use super::failure::Failure;
 use super::finished_trial::FinishedTrial;
 use super::page_file;
-use crate::experiment::reach;
+use crate::experiment::{reach, watch_trial};
 use crate::export::REPLAY;
-use crate::radio::Reach;
 use crate::report::{Film, ReplayInput, replay};
 use crate::text::shown;
 
@@ -42,25 +40,21 @@ pub struct ReplayArguments {
 /// If there is no such trial, it cannot be run again, or the page cannot be written.
 pub fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
     let finished = FinishedTrial::of(&arguments.dir, arguments.trial)?;
-    let film = Arc::new(Mutex::new(Film::default()));
-    let record = finished.watched(&film, "show")?;
-    let film = std::mem::take(&mut *film.lock().unwrap_or_else(PoisonError::into_inner));
-    let reach = reach(&finished.scenario, arguments.trial);
-    let page = replay(
-        &ReplayInput {
-            scenario: &finished.scenario,
-            question: finished.manifest.question.as_deref(),
-            record: &record,
-            is_disk: matches!(reach, Reach::Disk(_)),
-            reach: &reach,
-            folder: &shown(&finished.dir),
-        },
-        film,
-    );
+    let scenario = &finished.scenario;
+    let watch = |stop: &_| watch_trial(scenario, arguments.trial, Film::default(), stop);
+    let (record, film) = finished.again("show", watch)?;
+    let input = ReplayInput {
+        scenario,
+        question: finished.manifest.question.as_deref(),
+        record: &record,
+        reach: &reach(scenario, arguments.trial),
+        folder: &shown(&finished.dir),
+    };
+    let page = replay(&input, film);
     let name = match arguments.trial {
         0 => REPLAY.to_owned(),
         other => format!("replay-{other}.html"),
     };
-    let file = arguments.out.clone().unwrap_or_else(|| finished.dir.join(name));
-    page_file::write(&file, &page, "shows the trial").map(|_| ())
+    let file = arguments.out.clone().unwrap_or_else(|| finished.dir.join(&name));
+    page_file::write(&file, &page, &name, "shows the trial").map(|_| ())
 }

@@ -93,7 +93,7 @@ fn report_study(folder: &StudyFolder, arguments: &ReportArguments) -> Result<(),
     let comparison = folder.finished(&manifest)?;
     let html = study_page(&comparison, &manifest.made_by());
     let place = match &arguments.out {
-        Some(file) => page_file::write(file, &html, "has the charts")?,
+        Some(file) => page_file::write(file, &html, PAGE, "has the charts")?,
         None => kept(
             folder.path(),
             folder.keep_page(&manifest, &html).map_err(WriteError::from),
@@ -147,7 +147,7 @@ fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Option<V
     match (&arguments.out, results.sources.len()) {
         (Some(file), many) => {
             let files = if many == 1 { names(manifest) } else { Vec::new() };
-            Ok((page_file::write(file, &html(), "has the charts")? == Place::File).then_some(files))
+            Ok((page_file::write(file, &html(), PAGE, "has the charts")? == Place::File).then_some(files))
         }
         (None, 1) => {
             let kept_page = Folder::new(dir.clone()).keep_page(manifest, &html());

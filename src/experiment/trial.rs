@@ -47,21 +47,49 @@ pub fn run_trial_in(
     run(setup, scenario, driver, stop)
 }
 
-/// Runs a trial as [`run_trial`] does while `watch` is told all of it. Whoever watches, the run is the same, digest and all.
+/// Runs a trial as [`run_trial`] does while `watch` is told all of it, and gives that back. Whoever watches, the run is the same, digest and all.
+///
+/// ```
+/// use desim::radio::LossCause;
+/// use desim::simulation::{Copy, Watch};
+///
+/// #[derive(Default)]
+/// struct Losses(u64);
+///
+/// impl Watch for Losses {
+///     fn lost(&mut self, _: &Copy, _: LossCause, _: desim::engine::SimTime) {
+///         self.0 += 1;
+///     }
+/// }
+///
+/// let text = std::fs::read_to_string("scenarios/loss20.ron").expect("it ships");
+/// let short = ["time_limit=11.0".parse().expect("an override")];
+/// let scenario = desim::scenario::parse("loss20.ron", &text, &short).expect("a scenario");
+/// let (record, losses) = desim::experiment::watch_trial(&scenario, 0, Losses::default(), &Default::default())?;
+/// let lost: u64 = record.ledger.iter().flat_map(|fates| fates.lost).sum();
+/// assert_eq!(losses.0, lost);
+/// # Ok::<(), desim::experiment::TrialError>(())
+/// ```
 ///
 /// # Errors
 /// As [`run_trial`].
+///
+/// # Panics
+/// If the scenario's kind of protocol keeps the setup that it was handed when the run is over.
 pub fn watch_trial<W: Watch + 'static>(
     scenario: &Scenario,
     trial: u32,
-    watch: &Arc<Mutex<W>>,
+    watch: W,
     stop: &CancellationToken,
-) -> Result<TrialRecord, TrialError> {
+) -> Result<(TrialRecord, W), TrialError> {
+    let watch = Arc::new(Mutex::new(watch));
     let setup = Setup {
-        watcher: Some(Watcher::new(Arc::clone(watch))),
+        watcher: Some(Watcher::new(Arc::clone(&watch))),
         ..setup(scenario, trial)
     };
-    run(setup, scenario, DriverKind::Inline, stop)
+    let record = run(setup, scenario, DriverKind::Inline, stop)?;
+    let watch = Arc::into_inner(watch).expect("the setup is gone, and the watcher in it");
+    Ok((record, watch.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }
 
 /// Runs a trial as [`run_trial`] does, and follows every status of `robot` into [`TrialRecord::trace`], if robots send any.
@@ -74,12 +102,7 @@ pub fn trace_trial(
     robot: ActorId,
     stop: &CancellationToken,
 ) -> Result<TrialRecord, TrialError> {
-    let trace = Arc::new(Mutex::new(StatusTrace::new(robot)));
-    let mut record = watch_trial(scenario, trial, &trace, stop)?;
-    let trace = std::mem::replace(
-        &mut *trace.lock().unwrap_or_else(PoisonError::into_inner),
-        StatusTrace::new(robot),
-    );
+    let (mut record, trace) = watch_trial(scenario, trial, StatusTrace::new(robot), stop)?;
     record.trace = scenario.protocol.has_statuses().then_some(trace);
     Ok(record)
 }

@@ -60,7 +60,8 @@ pub trait Watch: Send {
     fn end(&mut self, end: SimTime) {}
 }
 
-/// Whoever watches a run: what it gathers is there when the run is over, for those who kept a clone or the `Arc`.
+/// Whoever watches a run: what it gathers is there when the run is over, for those who kept the `Arc`.
+/// [`watch_trial`](crate::experiment::watch_trial) does.
 #[derive(Clone)]
 pub struct Watcher(Arc<Mutex<dyn Watch>>);
 

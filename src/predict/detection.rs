@@ -11,9 +11,15 @@ use crate::radio::LossConfig;
 /// Share of statuses that may overtake each other before the formulas no longer hold.
 const OVERTAKEN: f64 = 1e-3;
 
+const DURATION: &str = "mistake_duration_s";
+
 pub fn predict(scene: &Scene<'_>, preflight: &mut Preflight) {
     if let Err(why) = figures(scene, preflight) {
-        preflight.refuse("detection", "mistakes, accuracy, detection time", why);
+        return preflight.refuse("detection", "mistakes, accuracy, detection time", why);
+    }
+    if preflight.get("mistake_recurrence_s").is_some() && preflight.get(DURATION).is_none() {
+        let why = "mistakes are so rare that the formula's last digits decide";
+        preflight.refuse(DURATION, "duration of a mistake", why);
     }
 }
 
@@ -86,7 +92,7 @@ fn figures(scene: &Scene<'_>, preflight: &mut Preflight) -> Result<(), &'static 
         // Of mistakes as rare as the last digits of a share it is all rounding, and may come out negative.
         if duration >= 0.0 {
             push(
-                "mistake_duration_s",
+                DURATION,
                 "duration of a mistake",
                 duration,
                 "s",

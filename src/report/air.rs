@@ -2,8 +2,7 @@
 //! to what.
 
 use super::layout::Page;
-use super::number;
-use super::number::{NOTHING, count, estimate, figure, percent, seconds, signed};
+use super::number::{self, NOTHING, count, estimate, figure, percent, seconds, signed};
 use crate::metrics::summary::{RadioSummary, Sending};
 use crate::metrics::{Estimate, Summary};
 

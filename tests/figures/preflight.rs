@@ -303,9 +303,16 @@ fn a_duration_that_is_rounding_alone_is_not_predicted() {
         radio: (range: 1e0, loss: GilbertElliott(good_to_bad: 1e0, bad_to_good: 6.055059368502304e-12, good_loss: 9.999994994287572e-1, \
         bad_loss: 1e0), latency: Constant(1.6181667587032727e-4)), metrics: (sample_interval: 0.0))";
     let scenario = parse("wild.ron", text, &[]).unwrap_or_else(|report| panic!("{report}"));
-    for found in Preflight::of(&scenario).predictions {
-        assert!(found.value >= 0.0, "{found:?}");
-    }
+    let preflight = Preflight::of(&scenario);
+    assert!(
+        preflight.predictions.iter().all(|found| found.value >= 0.0),
+        "{preflight:?}"
+    );
+    let refused = preflight
+        .not_predicted
+        .iter()
+        .any(|left| left.name == "mistake_duration_s");
+    assert!(refused, "{preflight:?}");
 }
 
 #[test]

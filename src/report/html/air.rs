@@ -12,8 +12,6 @@ use super::figure::{Figure, Panel};
 use super::names::Names;
 use super::table::DataTable;
 use crate::metrics::Copies;
-use crate::metrics::detection::Cause;
-use crate::radio::LossCause;
 use crate::report::air::lost;
 use crate::report::number;
 
@@ -166,13 +164,10 @@ pub fn causes(input: &PageInput) -> Option<Figure> {
         table
             .rows
             .push(vec![cause.as_str().into(), (*frames).into(), share(*frames).into()]);
-        let known = LossCause::ALL
-            .into_iter()
-            .find(|known| known.name().replace('_', " ") == *cause);
         let bar = Bar::new(vec![shown(share(*frames))], vec![names.at(place)])
             .name(words(cause))
             .orientation(Orientation::Horizontal)
-            .marker(Marker::new().color(known.map_or(ALL, |known| cause_colour(Cause::Lost(known)))))
+            .marker(Marker::new().color(cause_colour(cause)))
             .show_legend(false)
             .hover_template("%{y}: %{x:.4g} %<extra></extra>");
         plot.add_trace(bar);

@@ -35,10 +35,11 @@ pub fn topic_colour(topic: usize) -> &'static str {
     TOPICS[topic % TOPICS.len()]
 }
 
-/// The colour of a cause, of a loss or of whatever else kept messages away: the same in all figures.
-pub fn cause_colour(cause: Cause) -> &'static str {
-    let place = Cause::ALL.iter().position(|known| *known == cause);
-    CAUSES[place.unwrap_or(0)]
+/// The colour of a cause, of a loss or of whatever else kept messages away, by its name, with blanks or without: the same in all figures.
+pub fn cause_colour(name: &str) -> &'static str {
+    let mut known = Cause::ALL.iter().zip(CAUSES);
+    let found = known.find(|(cause, _)| cause.name() == name.replace(' ', "_"));
+    found.map_or(ALL, |(_, colour)| colour)
 }
 
 /// The colour of role number `index`, called `name`, as the pictures have it.

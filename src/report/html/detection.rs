@@ -42,7 +42,7 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
         let bars = Bar::new(counts.to_vec(), names.all())
             .name(words(cause.name()))
             .orientation(Orientation::Horizontal)
-            .marker(Marker::new().color(cause_colour(cause)))
+            .marker(Marker::new().color(cause_colour(cause.name())))
             .hover_template("%{y}: %{x}");
         plot.add_trace(bars);
     }

@@ -11,9 +11,7 @@ use super::figure::{Figure, Panel};
 use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::LatencyHistogram;
-use crate::metrics::detection::Cause;
 use crate::metrics::summary::Fates;
-use crate::radio::LossCause;
 use crate::report::number;
 
 /// Copies lost, by topic and cause.
@@ -54,7 +52,7 @@ pub fn lost(input: &PageInput) -> Figure {
         let bars = Bar::new(rows.iter().map(share).collect(), names.all())
             .name(words(name))
             .orientation(Orientation::Horizontal)
-            .marker(Marker::new().color(cause_colour(Cause::Lost(LossCause::ALL[cause]))))
+            .marker(Marker::new().color(cause_colour(name)))
             .hover_template("%{y}: %{x:.4g} %");
         plot.add_trace(bars);
     }

@@ -60,7 +60,7 @@ pub struct Film {
     robots: usize,
     /// Messages sent, with those left out.
     sent: u64,
-    /// Of messages with copies yet to be told of: their place, and how many.
+    /// Of messages with copies yet to be told of: their place, and how many. Asked by key alone, so that its order reaches nothing.
     open: HashMap<(ActorId, u32), (u32, u64)>,
 }
 

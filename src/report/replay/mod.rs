@@ -16,7 +16,6 @@ use self::links::Toggles;
 use self::sections::Sections;
 use super::html::PAGE_MARK;
 use super::html::chart::{cause_colour, role_colour, topic_colour};
-use crate::metrics::detection::Cause;
 use crate::metrics::{Outcome, TrialRecord};
 use crate::motion::ObstacleConfig;
 use crate::radio::{LossCause, Reach};
@@ -49,8 +48,6 @@ pub struct ReplayInput<'a> {
     pub record: &'a TrialRecord,
     /// Who was in range of whom.
     pub reach: &'a Reach,
-    /// Whether that follows from distances alone.
-    pub is_disk: bool,
     /// What the command calls the folder of the results.
     pub folder: &'a str,
 }
@@ -60,7 +57,7 @@ pub struct ReplayInput<'a> {
 pub fn replay(input: &ReplayInput, mut film: Film) -> String {
     let record = input.record;
     film.close(record.simulated, record.robots.iter().map(|robot| robot.pose.position));
-    let toggles = (!input.is_disk).then(|| Toggles::of(&film, input.reach));
+    let toggles = range(input.reach).is_none().then(|| Toggles::of(&film, input.reach));
     let (sections, data) = Sections::of(&film, toggles.as_ref()).deflated();
     let mut meta = meta(input, &film, toggles.as_ref());
     meta["sections"] = sections;
@@ -72,6 +69,14 @@ pub fn replay(input: &ReplayInput, mut film: Film) -> String {
         // What others wrote comes last, from the end on: nothing is put into it.
         .replacen("{{meta}}", &meta.to_string().replace('<', "\\u003c"), 1)
         .replacen("{{title}}", &escaped(&title), 1)
+}
+
+/// Within which distance robots are in range of each other, where that follows from distances alone.
+fn range(reach: &Reach) -> Option<f64> {
+    match reach {
+        Reach::Disk(range) => Some(*range),
+        Reach::Links(_) => None,
+    }
 }
 
 fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {
@@ -103,7 +108,7 @@ fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {
         "topics": vocabulary.topics,
         "topic_colours": (0..vocabulary.topics.len()).map(topic_colour).collect::<Vec<_>>(),
         "causes": causes.map(|cause| cause.name().replace('_', " ")),
-        "cause_colours": causes.map(|cause| cause_colour(Cause::Lost(cause))),
+        "cause_colours": causes.map(|cause| cause_colour(cause.name())),
         "frames": {
             "count": film.instants(),
             "every_s": film.every.as_secs(),
@@ -111,7 +116,7 @@ fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {
             "width": sections::width(film),
             "note": film.is_thinned().then(|| format!("Places every {} only, straight lines between them.", number::seconds(film.every.as_secs()))),
         },
-        "range_m": input.is_disk.then(|| input.reach.farthest()),
+        "range_m": range(input.reach),
         "links": toggles.map(|toggles| json!({
             "samples": toggles.looks(),
             "every_frames": toggles.every,

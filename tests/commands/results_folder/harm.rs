@@ -226,7 +226,7 @@ fn a_page_goes_where_it_is_asked_for_whole_or_not_at_all() {
     std::os::unix::fs::symlink("nothing", at("loose")).unwrap();
     for (out, says) in [
         ("results", "results is a folder"),
-        ("missed.ron", "missed.ron is no report of desim"),
+        ("missed.ron", "missed.ron is no page of desim"),
         ("loose", "loose is a link to nothing"),
     ] {
         let refused = report(out);

@@ -215,7 +215,7 @@ fn report_refuses_bad_input_with_status_2_and_writes_nothing() {
         (&["report", "nowhere"], "nowhere holds no results"),
         (&["report", "small.ron"], "small.ron holds no results"),
         (&["report", "a", "b"], "they hold the same trials"),
-        (&["report", "a", "--out", "mine.txt"], "mine.txt is no report of desim"),
+        (&["report", "a", "--out", "mine.txt"], "mine.txt is no page of desim"),
         (&["report", "a", "--out", "b"], "b is a folder"),
     ];
     for (arguments, expected) in cases {

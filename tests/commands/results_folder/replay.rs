@@ -2,14 +2,13 @@
 
 use std::fs;
 use std::io::Read;
-use std::sync::{Arc, Mutex};
 
 use assert_cmd::Command;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use desim::experiment::{reach, run_trial, watch_trial};
 use desim::metrics::TrialRecord;
-use desim::radio::{LossCause, Reach};
+use desim::radio::LossCause;
 use desim::report::{Film, ReplayInput, replay};
 use desim::scenario::{Scenario, parse};
 use desim::simulation::DriverKind;
@@ -43,16 +42,13 @@ struct Page {
 
 impl Page {
     fn of(scenario: &Scenario) -> (Self, TrialRecord) {
-        let film = Arc::new(Mutex::new(Film::default()));
         let stop = CancellationToken::new();
-        let record = watch_trial(scenario, 0, &film, &stop).expect("the trial reaches its end");
-        let film = std::mem::take(&mut *film.lock().expect("nobody panicked"));
+        let (record, film) = watch_trial(scenario, 0, Film::default(), &stop).expect("the trial reaches its end");
         let reach = reach(scenario, 0);
         let input = ReplayInput {
             scenario,
             question: Some("</script> & co {{title}}{{data}}"),
             record: &record,
-            is_disk: matches!(reach, Reach::Disk(_)),
             reach: &reach,
             folder: "results/moving",
         };
@@ -294,7 +290,7 @@ fn the_command_writes_a_page_beside_the_results_and_refuses_what_is_none() {
         ),
         (
             &["replay", "r", "--out", "moving.ron"],
-            "moving.ron is no report of desim",
+            "moving.ron is no page of desim",
         ),
     ] {
         let (status, said) = desim(arguments);
