@@ -8,6 +8,7 @@ use crate::protocol::{Address, Input, MessageSize, Note, Output, Reception, Topi
 use crate::radio::{Account, Conclusion, FrameId, LossCause, Reading};
 
 mod composed;
+pub mod log;
 mod watch;
 
 pub(crate) use watch::Watching;

@@ -6,7 +6,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::failure::Failure;
 use super::interrupt;
-use crate::export::{Contents, Folder, FolderError, Manifest};
+use crate::export::{Contents, Folder, FolderError, Manifest, TrialEntry};
 use crate::kind::TrialError;
 use crate::metrics::TrialRecord;
 use crate::scenario::{Scenario, parse, to_ron};
@@ -24,6 +24,7 @@ pub struct FinishedTrial {
     /// The scenario that it holds.
     pub scenario: Scenario,
     digest: String,
+    simulated_s: f64,
 }
 
 impl FinishedTrial {
@@ -34,14 +35,26 @@ impl FinishedTrial {
     pub fn of(dir: &Path, trial: u32) -> Result<Self, Failure> {
         let manifest = results(dir)?;
         let scenario = scenario(&manifest, dir)?;
-        let digest = recorded_digest(&manifest, dir, trial)?;
+        let entry = recorded(&manifest, dir, trial)?;
+        let (digest, simulated_s) = (entry.digest.clone(), entry.simulated_s);
         Ok(Self {
             dir: dir.to_owned(),
             trial,
             manifest,
             scenario,
             digest,
+            simulated_s,
         })
+    }
+
+    /// The digest of its events, in hexadecimal digits.
+    pub fn digest(&self) -> &str {
+        &self.digest
+    }
+
+    /// How long it lasted, seconds.
+    pub fn simulated_s(&self) -> f64 {
+        self.simulated_s
     }
 
     /// Runs it again by `run`, which also answers what it has gathered.
@@ -125,8 +138,8 @@ fn scenario(manifest: &Manifest, dir: &Path) -> Result<Scenario, Failure> {
     Ok(parse(&place, &to_ron(&scenario), &[])?)
 }
 
-/// The digest that the trial had.
-fn recorded_digest(manifest: &Manifest, dir: &Path, trial: u32) -> Result<String, Failure> {
+/// What is known of the trial.
+fn recorded<'a>(manifest: &'a Manifest, dir: &Path, trial: u32) -> Result<&'a TrialEntry, Failure> {
     let found = manifest.trials.iter().find(|entry| entry.trial == trial);
     let Some(found) = found else {
         return refuse(format!(
@@ -136,5 +149,5 @@ fn recorded_digest(manifest: &Manifest, dir: &Path, trial: u32) -> Result<String
             manifest.trials.len().saturating_sub(1)
         ));
     };
-    Ok(found.digest.clone())
+    Ok(found)
 }

@@ -27,6 +27,7 @@ pub mod scenario;
 pub mod schema;
 pub mod shown;
 mod told;
+pub mod trace;
 pub mod validate;
 
 use std::ffi::OsString;
@@ -46,6 +47,7 @@ use replay::ReplayArguments;
 use report::ReportArguments;
 use scenario::ScenarioArguments;
 use shown::Format;
+use trace::TraceArguments;
 use validate::ValidateArguments;
 
 use crate::text::clean_lines;
@@ -134,6 +136,9 @@ pub enum Command {
     /// Make a page on which a finished trial can be watched
     #[command(long_about = replay::LONG_ABOUT)]
     Replay(ReplayArguments),
+    /// Write frames, copies, events and places of a finished trial: tables, a packet capture, recordings
+    #[command(long_about = trace::LONG_ABOUT)]
+    Trace(TraceArguments),
     /// Hold every model against its closed form on this machine
     #[command(long_about = validate::LONG_ABOUT)]
     Validate(ValidateArguments),
@@ -206,6 +211,7 @@ pub fn run(command: Command) -> Result<(), Failure> {
         Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
+        Command::Trace(arguments) => trace::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
         Command::New(arguments) => new::run(&arguments, &mut out),
         Command::Schema { study } => Ok(schema::schema(study, &mut out)?),

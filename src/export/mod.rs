@@ -22,6 +22,8 @@ mod study;
 mod table;
 #[cfg_attr(not(feature = "parquet"), path = "no_tables.rs")]
 mod tables;
+#[cfg(feature = "command")]
+pub mod trace;
 mod write;
 
 pub use files::{PAGE, REPLAY};

@@ -25,7 +25,7 @@ pub struct Column<R> {
     value: Value<R>,
 }
 
-type Get<R, T> = Box<dyn Fn(&R) -> T>;
+type Get<R, T> = Box<dyn Fn(&R) -> T + Send>;
 
 /// How a column's value is read off a row. Ids and counts are signed in the file, because R and others know no unsigned
 /// numbers; none of them reaches so far.
@@ -51,7 +51,7 @@ macro_rules! constructors {
     ($($(#[$docs:meta])* $function:ident, $variant:ident, $type:ty;)*) => {
         impl<R> Column<R> {
             $($(#[$docs])*
-            pub fn $function(name: impl Into<Cow<'static, str>>, get: impl Fn(&R) -> $type + 'static) -> Self {
+            pub fn $function(name: impl Into<Cow<'static, str>>, get: impl Fn(&R) -> $type + Send + 'static) -> Self {
                 Self { name: name.into(), value: Value::$variant(Box::new(get)) }
             })*
         }

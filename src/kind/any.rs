@@ -9,7 +9,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use super::{Broadcasts, Expected, InPieces, Kind, Problem, Sections, Shared, Start, Swarm, Targets};
 use crate::metrics::{NotedFigure, TrialRecord};
 use crate::protocol::detector::DetectorConfig;
-use crate::protocol::{CompletionConfig, Protocol};
+use crate::protocol::{CompletionConfig, Layout, Protocol};
 use crate::simulation::RunError;
 
 /// A config of some [`Kind`]: the same methods, and what is known of its robots.
@@ -196,6 +196,10 @@ pub struct Entry {
     pub read: ReadConfig,
     /// Reads a config from RON for the sake of the error, which any other way loses what it was of.
     pub read_ron: fn(RonReader<'_, '_, '_, '_>) -> Result<(), ron::Error>,
+    /// How its messages lie in their bytes, if that is described.
+    pub layout: fn() -> Layout,
+    /// Names of all its topics.
+    pub topics: &'static [&'static str],
     /// The schema of the config, or a reference to it.
     pub schema: fn(&mut SchemaGenerator) -> Schema,
     /// The schema itself.
@@ -212,6 +216,8 @@ impl Entry {
             is_unit: is_unit::<K>(),
             read: |reader| erased_serde::deserialize::<K>(reader).map(|config| Arc::new(config) as Arc<dyn AnyKind>),
             read_ron: |reader| K::deserialize(reader).map(drop),
+            layout: K::layout,
+            topics: K::Robot::TOPICS,
             schema: SchemaGenerator::subschema_for::<K>,
             schema_in_place: <K as JsonSchema>::json_schema,
         }

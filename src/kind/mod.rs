@@ -93,7 +93,7 @@ pub use start::{Start, TrialError};
 
 use crate::metrics::{NotedFigure, TrialRecord};
 use crate::protocol::detector::DetectorConfig;
-use crate::protocol::{CompletionConfig, Protocol};
+use crate::protocol::{CompletionConfig, Layout, Protocol};
 use crate::simulation::RunError;
 
 /// A kind of protocol: what a scenario names, and what is said of it field by field. [The module](self) has an example, and so has
@@ -113,6 +113,12 @@ pub trait Kind: Clone + Debug + PartialEq + Serialize + DeserializeOwned + JsonS
 
     /// The robots of a swarm, in order of their ids.
     fn robots(&self, swarm: &Swarm<'_>) -> Vec<Self::Robot>;
+
+    /// How its messages lie in their bytes, for those who look at frames: not described, by default. It takes no part in a run.
+    #[must_use]
+    fn layout() -> Layout {
+        Layout::default()
+    }
 
     /// What completes the mission of `robots`, those of a trial before its start: nothing, by default.
     fn goal(&self, robots: &[Self::Robot]) -> Goal {

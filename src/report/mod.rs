@@ -25,6 +25,7 @@ pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use html::{PAGE_MARK, PageInput, page, study_page};
 pub use layout::message;
 pub use missed::Asked;
+pub use number::seconds;
 pub use preflight::preflight;
 #[cfg(feature = "command")]
 pub use replay::{Film, ReplayInput, replay};

@@ -25,18 +25,18 @@ use crate::protocol::detector::{Monitored as _, Probe};
 
 use super::message::{Message, Order, Request, Role, Status, Strand, TargetSet};
 
-const JOIN: u8 = 0x10;
-const ACCEPT: u8 = 0x11;
-const REFUSE: u8 = 0x12;
-const RELEASE: u8 = 0x13;
-const ORDER: u8 = 0x14;
-const ADOPT: u8 = 0x15;
-const WORK: u8 = 0x16;
-const REPLACE: u8 = 0x17;
-const ORDER_WITH_RESERVE: u8 = 0x18;
-const PARENT_STRAND: u8 = 0x20;
-const CHILD_STRAND: u8 = 0x21;
-const WIDE_IDS: u8 = 0x80;
+pub(super) const JOIN: u8 = 0x10;
+pub(super) const ACCEPT: u8 = 0x11;
+pub(super) const REFUSE: u8 = 0x12;
+pub(super) const RELEASE: u8 = 0x13;
+pub(super) const ORDER: u8 = 0x14;
+pub(super) const ADOPT: u8 = 0x15;
+pub(super) const WORK: u8 = 0x16;
+pub(super) const REPLACE: u8 = 0x17;
+pub(super) const ORDER_WITH_RESERVE: u8 = 0x18;
+pub(super) const PARENT_STRAND: u8 = 0x20;
+pub(super) const CHILD_STRAND: u8 = 0x21;
+pub(super) const WIDE_IDS: u8 = 0x80;
 
 /// The codec of [`Message`].
 #[derive(Debug, Default)]

@@ -1,9 +1,9 @@
 //! The backbone as scenarios name it.
 
-use super::{Backbone, BackboneConfig, Role, checks, swarm};
+use super::{Backbone, BackboneConfig, Role, checks, layout, swarm};
 use crate::kind::{Expected, Goal, Holds, InPieces, Kind, Prediction, Problem, Sections, Shared, Swarm, Targets};
 use crate::metrics::{Mission, MissionTarget};
-use crate::protocol::CompletionConfig;
+use crate::protocol::{CompletionConfig, Layout};
 
 impl Kind for BackboneConfig {
     const NAME: &'static str = "Backbone";
@@ -17,6 +17,10 @@ impl Kind for BackboneConfig {
             ..
         } = robots.sections;
         swarm(self, gossip, detector, control, robots.poses, robots.streams)
+    }
+
+    fn layout() -> Layout {
+        layout::layout()
     }
 
     /// Every target held, with its links (paper eqs. 2 to 5).

@@ -11,6 +11,7 @@ mod free;
 mod heal;
 mod isolated;
 mod kind;
+mod layout;
 mod lines;
 mod message;
 mod mission;

@@ -12,6 +12,7 @@ use crate::metrics::TrialRecord;
 use crate::motion::DeployConfig;
 use crate::protocol::detector::Probe;
 use crate::protocol::wander::WanderConfig;
+use crate::protocol::{Layout, Part};
 use crate::simulation::RunError;
 
 /// Status broadcasts and timeouts alone.
@@ -36,6 +37,13 @@ impl HeartbeatConfig {
 impl Kind for HeartbeatConfig {
     const NAME: &'static str = "Heartbeat";
     type Robot = Heartbeat;
+
+    fn layout() -> Layout {
+        // A number has fewer than 31 bits, so that no probe begins as it does.
+        let status = (0..=0x3f, vec![Part::number("number", 4)]);
+        let probes = Probe::layout();
+        Layout::new(vec![Part::OneOf(std::iter::once(status).chain(probes).collect())])
+    }
 
     fn robots(&self, swarm: &Swarm<'_>) -> Vec<Heartbeat> {
         Self::swarm::<Infallible>(swarm)

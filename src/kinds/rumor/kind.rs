@@ -1,14 +1,18 @@
 //! Rumours as scenarios name them.
 
-use super::{Rumor, RumorConfig, swarm};
+use super::{Rumor, RumorConfig, message, swarm};
 use crate::kind::{Expected, Goal, InPieces, Kind, Problem, Sections, Shared, Swarm};
-use crate::protocol::CompletionConfig;
 use crate::protocol::gossip::FanOutConfig;
 use crate::protocol::wander::WanderConfig;
+use crate::protocol::{CompletionConfig, Layout};
 
 impl Kind for RumorConfig {
     const NAME: &'static str = "Rumor";
     type Robot = Rumor;
+
+    fn layout() -> Layout {
+        message::layout()
+    }
 
     fn robots(&self, robots: &Swarm<'_>) -> Vec<Rumor> {
         let Sections { gossip, control, .. } = robots.sections;

@@ -12,7 +12,7 @@ use bytes::{Buf, BufMut, BytesMut};
 use tokio_util::codec::{Decoder, Encoder};
 
 use crate::engine::ActorId;
-use crate::protocol::CodecError;
+use crate::protocol::{CodecError, Layout, Part};
 
 const RUMOR: u8 = 0;
 const REQUEST: u8 = 1;
@@ -72,6 +72,29 @@ fn put_head(kind: u8, to: Option<ActorId>, bytes: &mut BytesMut) {
         }
         None => bytes.put_u8(kind),
     }
+}
+
+/// How messages lie in their bytes, for those who look at frames.
+pub fn layout() -> Layout {
+    const MESSAGES: &[(u64, &str)] = &[
+        (RUMOR as u64, "rumor"),
+        (REQUEST as u64, "request"),
+        ((RUMOR | ADDRESSED) as u64, "rumor to one"),
+        ((REQUEST | ADDRESSED) as u64, "request to one"),
+    ];
+    let case = |kind: u8, parts: Vec<Part>| {
+        let to = (kind & ADDRESSED != 0).then(|| Part::robot("to", 2));
+        let head = std::iter::once(Part::named("message", MESSAGES)).chain(to);
+        (kind..=kind, head.chain(parts).collect())
+    };
+    let rumor = || vec![Part::number("rumor", 1), Part::rest("body")];
+    let request = || vec![Part::rest("known")];
+    Layout::new(vec![Part::OneOf(vec![
+        case(RUMOR, rumor()),
+        case(RUMOR | ADDRESSED, rumor()),
+        case(REQUEST, request()),
+        case(REQUEST | ADDRESSED, request()),
+    ])])
 }
 
 impl Decoder for RumorCodec {
@@ -147,6 +170,11 @@ mod tests {
         }
 
         #[test]
+        fn the_layout_leaves_no_byte_undescribed(message in message()) {
+            prop_assert_eq!(layout().read(&encoded(message)).left, 0);
+        }
+
+        #[test]
         fn arbitrary_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..64)) {
             let _ = RumorCodec.decode(&mut BytesMut::from(bytes.as_slice()));
         }
@@ -160,5 +188,14 @@ mod tests {
         assert_eq!(&encoded(rumor(None))[..], [0, 3, 3, 3]);
         assert_eq!(&encoded(Message::Request { to, known: 0b101 })[..], [0x81, 1, 2, 5]);
         assert_eq!(&encoded(Message::Request { to: None, known: 0 })[..], [1]);
+        let words = |message| layout().read(&encoded(message)).to_string();
+        assert_eq!(
+            words(rumor(to)),
+            "message rumor to one, to 258, rumor 3, body (2 bytes)"
+        );
+        assert_eq!(
+            words(Message::Request { to: None, known: 0b101 }),
+            "message request, known (1 byte)"
+        );
     }
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{Source, To};
 use crate::engine::ActorId;
 use crate::kind::{Broadcasts, Kind, Sections, Shared, Swarm};
+use crate::protocol::{Layout, Part};
 use crate::quantity::Positive;
 
 /// Robots that send messages of one size, so often and to these; nothing else. They stand where they are.
@@ -103,6 +104,10 @@ impl TrafficConfig {
 impl Kind for TrafficConfig {
     const NAME: &'static str = "Traffic";
     type Robot = Source;
+
+    fn layout() -> Layout {
+        Layout::new(vec![Part::rest("load")])
+    }
 
     fn robots(&self, swarm: &Swarm<'_>) -> Vec<Source> {
         let robots = swarm.poses.len() as u32;

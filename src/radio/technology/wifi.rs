@@ -111,6 +111,16 @@ struct Kind {
 }
 
 impl WifiConfig {
+    /// The rate of what follows the PHY's header, bits a second.
+    #[must_use]
+    pub fn bits_a_second(&self) -> f64 {
+        let lowest = match self.standard {
+            WifiStandard::B => DsssRate::ALL[0],
+            WifiStandard::G => OfdmRate::ALL[0],
+        };
+        self.rate.map_or(lowest, Positive::get)
+    }
+
     /// The radio that it describes. Rates that its standard does not have are taken for the lowest: [`problems`](Self::problems) finds them first.
     pub(super) fn phy(&self) -> Phy {
         let overhead = MAC_BYTES + LLC_BYTES + CHECK_BYTES;

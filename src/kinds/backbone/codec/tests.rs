@@ -1,3 +1,4 @@
+use super::super::layout::layout;
 use super::*;
 use proptest::prelude::*;
 
@@ -67,6 +68,33 @@ fn encoded(message: Message) -> BytesMut {
 }
 
 proptest! {
+    #[test]
+    fn the_layout_leaves_no_byte_undescribed(message in message()) {
+        let content = layout().read(&encoded(message.clone()));
+        prop_assert_eq!(content.left, 0, "{}", content);
+        // What a message says stands in its content, in the words of its fields.
+        let words = content.to_string();
+        match message {
+            Message::Status(Status { need, chain, .. }) => {
+                let need = if need { "yes" } else { "no" };
+                let wanted = format!("parent need {need}, chain {chain}");
+                prop_assert!(words.ends_with(&wanted), "{}", words);
+            }
+            Message::Request(Request::Replace { to, child, sequence, chain, beyond }) => prop_assert_eq!(
+                words,
+                format!("message replace, to {to}, child {child}, sequence {sequence}, chain {chain}, robots beyond {beyond}")
+            ),
+            Message::Request(Request::Release { to }) => prop_assert_eq!(words, format!("message release, to {to}")),
+            Message::ParentStrand(strand) => {
+                let robots: String = strand.robots.iter().map(|robot| format!(", robot {robot}")).collect();
+                let (chain, next, number) = (strand.chain, strand.next, strand.robots.len());
+                let wanted = format!("message parent strand, chain {chain}, next {next}, number of robots {number}{robots}");
+                prop_assert_eq!(words, wanted);
+            }
+            _ => {}
+        }
+    }
+
     #[test]
     fn what_is_encoded_decodes_to_itself_and_leaves_nothing_over(message in message()) {
         let mut bytes = encoded(message.clone());

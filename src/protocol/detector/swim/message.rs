@@ -9,11 +9,13 @@
 //!
 //! Ids and incarnations take seven bits a byte, the lowest first, the top bit set in all but the last.
 
+use std::ops::RangeInclusive;
+
 use bytes::{Buf, BufMut, BytesMut};
 use serde::{Deserialize, Serialize};
 
 use crate::engine::ActorId;
-use crate::protocol::CodecError;
+use crate::protocol::{CodecError, Part};
 
 const MARK: u8 = 0x40;
 const PING: u8 = 0x40;
@@ -84,6 +86,25 @@ impl Probe {
     #[must_use]
     pub const fn begins_with(first: u8) -> bool {
         first & MARK != 0
+    }
+
+    /// How its bytes lie: for the layout of a protocol that carries it, a case for each kind.
+    #[must_use]
+    pub fn layout() -> Vec<(RangeInclusive<u8>, Vec<Part>)> {
+        let kind = Part::named(
+            "probe",
+            &[(PING as u64, "ping"), (REQUEST as u64, "request"), (ACK as u64, "ack")],
+        );
+        let to = || vec![Part::robot_varint("to")];
+        let request = vec![Part::list("number asked", to()), Part::robot_varint("probed")];
+        let claims = Part::named("claim", &[(0, "alive"), (1, "suspected"), (2, "down")]);
+        let news = vec![claims, Part::robot_varint("about"), Part::varint("incarnation")];
+        let rest = [Part::number("number", 2), Part::list("pieces of news", news)];
+        let case = |first: u8, called: Vec<Part>| {
+            let parts = std::iter::once(kind.clone()).chain(called).chain(rest.clone());
+            (first..=first, parts.collect())
+        };
+        vec![case(PING, to()), case(REQUEST, request), case(ACK, to())]
     }
 
     /// Appends its bytes.
@@ -209,6 +230,7 @@ impl Reader<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::protocol::Layout;
     use proptest::prelude::*;
 
     fn id() -> impl Strategy<Value = ActorId> {
@@ -248,6 +270,10 @@ mod tests {
         fn what_is_encoded_decodes_to_itself_and_leaves_nothing_over(probe in probe()) {
             let mut bytes = encoded(&probe);
             prop_assert!(Probe::begins_with(bytes[0]));
+            let content = Layout::new(vec![Part::OneOf(Probe::layout())]).read(&bytes);
+            prop_assert_eq!(content.left, 0, "{}", content);
+            let claims = content.fields.iter().filter(|(field, _)| field.name == "claim");
+            prop_assert_eq!(claims.count(), probe.news.len());
             prop_assert_eq!(Probe::decode(&mut bytes).unwrap(), probe);
             prop_assert!(bytes.is_empty());
         }

@@ -54,6 +54,18 @@ pub enum AccessConfig {
     Paced(PacedConfig),
 }
 
+impl AccessConfig {
+    /// Whether frames to one robot are acknowledged.
+    #[must_use]
+    pub const fn acknowledges(&self) -> bool {
+        match self {
+            Self::CsmaCa(config) => config.acknowledge,
+            Self::Dcf(config) => !config.unacknowledged,
+            Self::None | Self::Aloha { .. } | Self::SlottedAloha { .. } | Self::Tdma { .. } | Self::Paced(_) => false,
+        }
+    }
+}
+
 /// Unslotted CSMA/CA of IEEE 802.15.4 (2020, 6.2.5.1): wait for a random number of backoff periods, listen, and send if the channel is clear. Defaults are
 /// those of the standard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
