@@ -41,7 +41,7 @@ pub struct ReplayArguments {
 pub fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
     let finished = FinishedTrial::of(&arguments.dir, arguments.trial)?;
     let scenario = &finished.scenario;
-    let watch = |stop: &_| watch_trial(scenario, arguments.trial, Film::default(), stop);
+    let watch = |stop: &_| watch_trial(scenario, arguments.trial, Film::of(scenario), stop);
     let (record, film) = finished.again("show", watch)?;
     let input = ReplayInput {
         scenario,

@@ -10,3 +10,27 @@ pub const PAGE: &str = "report.html";
 pub const REPLAY: &str = "replay.html";
 /// Pictures of a trial, before its number.
 pub const PICTURES: [&str; 2] = ["final", "trajectories"];
+/// A trace of trial 0: a folder of tables, or, with an ending, a file.
+pub const TRACE: &str = "trace";
+/// How traces end that are files.
+pub const TRACE_ENDINGS: [&str; 4] = ["pcapng", "mcap", "json", "json.gz"];
+/// The tables of a trace.
+pub const TRACE_TABLES: [&str; 5] = [
+    "frames.parquet",
+    "messages.parquet",
+    "copies.parquet",
+    "events.parquet",
+    "places.parquet",
+];
+
+/// Whether a trace of some trial has this name: a folder, if it has no ending.
+pub fn is_trace(name: &str) -> bool {
+    let (name, ending) = name
+        .split_once('.')
+        .map_or((name, None), |(name, ending)| (name, Some(ending)));
+    let number = name
+        .strip_prefix(TRACE)
+        .map(|number| number.strip_prefix('-').unwrap_or(number));
+    let is_numbered = number.is_some_and(|number| number.bytes().all(|digit| digit.is_ascii_digit()));
+    is_numbered && ending.is_none_or(|ending| TRACE_ENDINGS.contains(&ending))
+}

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::Tables;
-use super::files::{MANIFEST, PAGE, PICTURES, REPLAY, SUMMARY};
+use super::files::{MANIFEST, PAGE, PICTURES, REPLAY, SUMMARY, TRACE_TABLES, is_trace};
 use super::held::{FileEntry, document, held, measure, sealed, unseal};
 use super::manifest::Manifest;
 use super::place::{FolderError, Place, WriteError, failed, gone};
@@ -134,7 +134,15 @@ impl Folder {
         self.drop_trials()?;
         let is_known = |name: &&String| (is_own(name) || named.contains_key(*name)) && *name != MANIFEST;
         for name in names.iter().filter(is_known) {
-            self.place.delete(name)?;
+            if self.path().join(name).is_dir() {
+                for table in TRACE_TABLES {
+                    self.place.delete(&format!("{name}/{table}"))?;
+                }
+                // Whatever else has come into it keeps it.
+                let _ = fs::remove_dir(self.path().join(name));
+            } else {
+                self.place.delete(name)?;
+            }
         }
         self.place.delete(MANIFEST)?;
         self.place.leave();
@@ -227,7 +235,7 @@ fn is_own(name: &str) -> bool {
         name == REPLAY || number.is_some_and(is_number)
     };
     let is_table = Tables::FILES.contains(&name) || Tables::OPTIONAL.contains(&name);
-    [MANIFEST, SUMMARY, PAGE].contains(&name) || is_table || is_picture() || is_replay()
+    [MANIFEST, SUMMARY, PAGE].contains(&name) || is_table || is_picture() || is_replay() || is_trace(name)
 }
 
 /// Holds the page of charts in `dir`, if there is one, against what was written.

@@ -65,7 +65,7 @@ pub enum Form {
     Float(u8),
     /// A [`Varint`](Self::Varint), and so many bytes of UTF-8.
     Text,
-    /// All bytes that are left.
+    /// All bytes that are left; a field only if there are any.
     Rest,
 }
 
@@ -269,7 +269,9 @@ impl Content {
             Value::Number(number) => *number,
             _ => 0,
         };
-        self.fields.push((field, value));
+        if value != Value::Bytes(0) {
+            self.fields.push((field, value));
+        }
         Some(number)
     }
 }

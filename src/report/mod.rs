@@ -4,6 +4,7 @@ mod air;
 mod comparison;
 mod explanation;
 mod failures;
+mod frame;
 mod further;
 mod grid;
 #[cfg(feature = "command")]
@@ -21,6 +22,7 @@ mod validation;
 
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
+pub use frame::{CopyStory, FrameStory, FrameTrace, MessageStory};
 #[cfg(feature = "command")]
 pub use html::{PAGE_MARK, PageInput, page, study_page};
 pub use layout::message;

@@ -57,11 +57,11 @@ use crate::kind::{Sections, Shared};
 use crate::metrics::MetricsConfig;
 use crate::metrics::figures::Registry;
 use crate::motion::{ArenaConfig, DeployConfig, MotionConfig, Site};
-use crate::protocol::CompletionConfig;
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
 use crate::protocol::wander::WanderConfig;
+use crate::protocol::{CompletionConfig, Layout};
 use crate::quantity::Positive;
 use crate::radio::RadioConfig;
 
@@ -161,6 +161,12 @@ impl Scenario {
     #[must_use]
     pub fn topics(&self) -> &'static [&'static str] {
         self.protocol.topics(&self.detector)
+    }
+
+    /// How its protocol's messages lie in their bytes, if the kind says so.
+    #[must_use]
+    pub fn layout(&self) -> Layout {
+        crate::kinds::find(self.protocol.name()).map_or_else(Layout::default, |kind| (kind.layout)())
     }
 
     /// Bytes that each frame carries beside its messages, and each message beside its payload.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::super::failure::Failure;
 use super::super::finished_trial::refuse;
 use super::super::output;
-use crate::export::trace::{Format, TABLES};
+use crate::export::trace::{Format, NAME, TABLES};
 use crate::text::shown;
 
 /// The place of a trace that is being written beside it. What is unfinished goes when this does.
@@ -106,8 +106,8 @@ impl Drop for Place {
 /// What a trace in a results folder is called.
 fn name(trial: u32, format: Format) -> String {
     let name = match trial {
-        0 => "trace".to_owned(),
-        other => format!("trace-{other}"),
+        0 => NAME.to_owned(),
+        other => format!("{NAME}-{other}"),
     };
     match format.ending() {
         Some(ending) => format!("{name}.{ending}"),

@@ -30,8 +30,8 @@ pub struct Capture {
     run: Run,
     header: MessageHeader,
     file: Pcapng<BufWriter<File>>,
-    /// What is captured later than something that is yet to come: when, as the how manyth, on which interface, what.
-    waiting: BinaryHeap<Reverse<(SimTime, u64, u32, Vec<u8>, Option<String>)>>,
+    /// What is captured later than something that is yet to come: when, on which interface, as the how manyth, what. A frame comes before its copies.
+    waiting: BinaryHeap<Reverse<(SimTime, u32, u64, Vec<u8>, Option<String>)>>,
     captured: u64,
 }
 
@@ -103,7 +103,7 @@ impl Capture {
 
     fn wait(&mut self, at: SimTime, interface: u32, bytes: Vec<u8>, comment: Option<String>) {
         self.waiting
-            .push(Reverse((at, self.captured, interface, bytes, comment)));
+            .push(Reverse((at, interface, self.captured, bytes, comment)));
         self.captured += 1;
     }
 }
@@ -171,7 +171,7 @@ impl Sink for Capture {
 
     fn settled(&mut self, until: SimTime) -> io::Result<()> {
         while self.waiting.peek().is_some_and(|Reverse(first)| first.0 < until) {
-            let Some(Reverse((at, _, interface, bytes, comment))) = self.waiting.pop() else {
+            let Some(Reverse((at, interface, _, bytes, comment))) = self.waiting.pop() else {
                 break;
             };
             self.file.packet(interface, at, &bytes, comment.as_deref())?;

@@ -1,7 +1,6 @@
 //! What a trace says of the run that it is of, and what its writers know of it before it begins.
 
 use super::link::Link;
-use crate::kinds;
 use crate::protocol::Layout;
 use crate::radio::Reach;
 use crate::scenario::Scenario;
@@ -39,14 +38,14 @@ impl Run {
     pub fn new(scenario: &Scenario, trial: u32, digest: &str, reach: Reach) -> Self {
         let topics = scenario.topics();
         let several = scenario.gossip.piggyback;
-        let [frame_header, message_header] = scenario.radio.header_bytes(topics.len(), several);
+        let [frame_header, message_header] = scenario.header_bytes();
         Self {
             trial,
             digest: digest.to_owned(),
             reach,
             topics,
             roles: scenario.protocol.roles(),
-            layout: kinds::find(scenario.protocol.name()).map_or_else(Layout::default, |kind| (kind.layout)()),
+            layout: scenario.layout(),
             frame_header,
             message_header,
             several,

@@ -14,10 +14,10 @@ mod tables;
 use std::io;
 use std::path::Path;
 
+pub use super::files::{TRACE as NAME, TRACE_TABLES as TABLES};
 pub use context::Run;
 pub use dissector::dissector;
 pub use link::Link;
-pub use tables::FILES as TABLES;
 
 use crate::engine::SimTime;
 use crate::happenings::Vocabulary;

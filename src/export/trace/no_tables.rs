@@ -8,9 +8,6 @@ use super::context::Run;
 use crate::happenings::log::Sink;
 use crate::metrics::TrialRecord;
 
-/// Names of the files: none.
-pub const FILES: [&str; 0] = [];
-
 /// No tables.
 pub struct Tables;
 

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::io;
 use std::path::Path;
 
+use super::super::files::TRACE_TABLES;
 use super::super::table::{Column, Table};
 use super::Trace;
 use super::context::Run;
@@ -14,15 +15,6 @@ use crate::happenings::log::{CopyRecord, Event, Frame, Message, Sink, What, addr
 use crate::metrics::TrialRecord;
 use crate::motion::World;
 use crate::radio::{LossCause, Outcome};
-
-/// Names of the files.
-pub const FILES: [&str; 5] = [
-    "frames.parquet",
-    "messages.parquet",
-    "copies.parquet",
-    "events.parquet",
-    "places.parquet",
-];
 
 /// The tables of a trace being written.
 pub struct Tables {
@@ -78,7 +70,7 @@ impl Tables {
     /// # Errors
     /// If the file system refuses.
     pub fn create(dir: &Path, run: Run) -> io::Result<Self> {
-        let path = |index: usize| dir.join(FILES[index]);
+        let path = |index: usize| dir.join(TRACE_TABLES[index]);
         Ok(Self {
             run,
             frames: Table::create(&path(0), frame_columns())?,

@@ -52,6 +52,14 @@ pub trait Sink: Send {
         Ok(())
     }
 
+    /// Of `robot`, the first `frames` frames are said, the last of them at `now`, with everyone where `world` has them.
+    ///
+    /// # Errors
+    /// If what is written cannot be.
+    fn spoke(&mut self, now: SimTime, robot: ActorId, frames: u32, world: &World) -> io::Result<()> {
+        Ok(())
+    }
+
     /// Something that happened, in order of time, but that a rumour is known from its arrival on and told of when it is read.
     ///
     /// # Errors
@@ -277,7 +285,11 @@ impl<S: Sink> Watch for Log<S> {
         }
     }
 
-    fn spoke(&mut self, now: SimTime, _: ActorId, _: &World) {
+    fn spoke(&mut self, now: SimTime, robot: ActorId, world: &World) {
+        if self.selection.is_then(now) {
+            let frames = self.firsts[robot.index()].len() as u32;
+            self.hand(|sink| sink.spoke(now, robot, frames, world));
+        }
         // A frame that nobody is offered is whole once all in it is said.
         self.close();
         if self.open.is_empty() && self.selection.is_then(now) {

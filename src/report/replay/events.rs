@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::changes::Change;
 use crate::metrics::detection::{Cause, Suspicion, Verdict};
 use crate::metrics::{FaultKind, Outcome, TrialRecord};
+use crate::protocol::Layout;
 use crate::radio::LossCause;
 
 /// So many a page lists.
@@ -46,8 +48,63 @@ pub fn faults(record: &TrialRecord) -> Vec<Fault> {
     of_robots.collect()
 }
 
-/// All that happened, in order of time, and how many of it there was no room for. `folder` is what the command calls the results.
-pub fn events(record: &TrialRecord, folder: &str) -> (Vec<Event>, u64) {
+/// What events are told of, and in which words.
+pub struct Told<'a> {
+    pub record: &'a TrialRecord,
+    /// What the command calls the results.
+    pub folder: &'a str,
+    pub roles: &'a [&'static str],
+    pub topics: &'a [&'static str],
+    pub layout: &'a Layout,
+}
+
+impl Told<'_> {
+    /// All that happened, in order of time, and how many of it there was no room for.
+    pub fn events(&self, roles: &[Change]) -> (Vec<Event>, u64) {
+        let (mut events, mut left_out) = events(self.record, self.folder);
+        let begun = roles.iter().filter(|change| change.from != change.to);
+        events.extend(begun.clone().take(MOST_EVENTS).map(|change| self.change(change)));
+        left_out += begun.count().saturating_sub(MOST_EVENTS) as u64;
+        events.sort_by(|a, b| a.t.total_cmp(&b.t));
+        (events, left_out)
+    }
+
+    /// A change of role, with what led to it as far as that is known.
+    fn change(&self, change: &Change) -> Event {
+        let Change { at, robot, .. } = change;
+        let role = |number: u8| self.roles.get(usize::from(number)).copied().unwrap_or("unknown");
+        let mut detail = Vec::new();
+        if !change.relied.is_empty() {
+            let relied: Vec<String> = change.relied.iter().map(ToString::to_string).collect();
+            detail.push(format!("relied on {} until then", relied.join(", ")));
+        }
+        for read in &change.read {
+            if let Some(content) = read.to(*robot, self.layout) {
+                let topic = self.topics.get(usize::from(read.topic.0)).copied().unwrap_or("unknown");
+                detail.push(format!("had just read from {}: {topic}, {content}", read.sender));
+            }
+        }
+        let suspicions = self.record.detection.suspicions.iter();
+        let held = suspicions.filter(|suspicion| {
+            suspicion.observer == *robot && suspicion.at <= *at && suspicion.until.is_none_or(|until| *at < until)
+        });
+        for suspicion in held.filter(|suspicion| change.relied.contains(&suspicion.subject)) {
+            detail.push(format!(
+                "suspected {}, on which it relied, since {:.3} s",
+                suspicion.subject,
+                suspicion.at.as_secs()
+            ));
+        }
+        let title = format!("{robot}: {} becomes {}", role(change.from), role(change.to));
+        Event {
+            detail,
+            ..Event::plain(at.as_secs(), "role", Some(robot.0), title)
+        }
+    }
+}
+
+/// Faults, suspicions and the end.
+fn events(record: &TrialRecord, folder: &str) -> (Vec<Event>, u64) {
     let mut events: Vec<Event> = Vec::new();
     for episode in &record.faults {
         let (robot, what) = match episode.kind {
@@ -96,7 +153,6 @@ pub fn events(record: &TrialRecord, folder: &str) -> (Vec<Event>, u64) {
         Outcome::NoMission => None,
     };
     events.extend(done);
-    events.sort_by(|a, b| a.t.total_cmp(&b.t));
     (events, left_out)
 }
 

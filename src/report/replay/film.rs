@@ -3,12 +3,15 @@
 
 use std::collections::HashMap;
 
+use super::airtime::Airtime;
+use super::changes::Changes;
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::Vec2;
 use crate::happenings::{Copy, Sent, Vocabulary, Watch};
 use crate::motion::World;
 use crate::protocol::Note;
-use crate::radio::LossCause;
+use crate::radio::{Conclusion, LossCause};
+use crate::scenario::Scenario;
 
 /// Places are told to this length, metres.
 pub const QUANTUM_M: f64 = 0.001;
@@ -53,6 +56,10 @@ pub struct Film {
     pub(super) one_of: u64,
     /// What became of their copies, as it was told.
     pub(super) copies: Vec<CopyFate>,
+    /// Why robots are what they are.
+    pub(super) changes: Changes,
+    /// What was on air, over a radio on which frames take time.
+    pub(super) airtime: Option<Airtime>,
     room: Room,
     tick: Span,
     ticks: u64,
@@ -88,6 +95,15 @@ pub(super) struct CopyFate {
 }
 
 impl Film {
+    /// Of a trial of `scenario`, before it.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        Self {
+            airtime: scenario.radio.takes_time().then(Airtime::default),
+            ..Self::default()
+        }
+    }
+
     /// How many instants there are.
     pub(super) fn instants(&self) -> usize {
         self.places.len() / self.robots.max(1)
@@ -175,6 +191,7 @@ impl Watch for Film {
         self.roles = (0..self.robots as u32)
             .map(|robot| (SimTime::ZERO, ActorId(robot), 0))
             .collect();
+        self.changes.begin(self.robots, vocabulary.status);
         self.look(world.positions());
     }
 
@@ -189,9 +206,14 @@ impl Watch for Film {
         if let Note::Role(role) = note {
             self.roles.push((now, robot, role.0));
         }
+        self.changes.noted(now, robot, note);
     }
 
     fn sent(&mut self, message: &Sent<'_>) {
+        self.changes.sent(message);
+        if let Some(airtime) = &mut self.airtime {
+            airtime.said(message);
+        }
         let number = self.sent;
         self.sent += 1;
         if !number.is_multiple_of(self.one_of) {
@@ -215,14 +237,23 @@ impl Watch for Film {
     }
 
     fn lost(&mut self, copy: &Copy, cause: LossCause, at: SimTime) {
+        self.changes.settled(copy, None);
         self.fate(copy, 1 + cause as u8, at);
     }
 
-    fn delivered(&mut self, copy: &Copy, at: SimTime, _: Option<SimTime>) {
+    fn delivered(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {
+        self.changes.settled(copy, read);
         self.fate(copy, DELIVERED, at);
     }
 
+    fn concluded(&mut self, conclusion: &Conclusion) {
+        if let Some(airtime) = &mut self.airtime {
+            airtime.concluded(conclusion);
+        }
+    }
+
     fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
+        self.changes.settled(copy, None);
         self.fate(copy, UNDER_WAY, at.unwrap_or(copy.sent_at));
     }
 }

@@ -3,6 +3,8 @@
 //! [`Film`] gathers what is seen while the trial runs once more; [`replay`] makes the page of it. Numbers are binary, deflated and in base64;
 //! the page's own script (`page/`) draws them.
 
+mod airtime;
+mod changes;
 mod events;
 mod film;
 mod links;
@@ -22,6 +24,8 @@ use crate::radio::{LossCause, Reach};
 use crate::report::number;
 use crate::scenario::Scenario;
 
+/// So many changes of whom robots rely on a page has room for.
+const MOST_CHANGES: usize = 200_000;
 /// The page, and what is put into it.
 const PAGE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
@@ -83,7 +87,14 @@ fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {
     let (scenario, record) = (input.scenario, input.record);
     let vocabulary = &film.vocabulary;
     let causes = LossCause::ALL;
-    let (events, left_out) = events::events(record, input.folder);
+    let told = events::Told {
+        record,
+        folder: input.folder,
+        roles: vocabulary.roles,
+        topics: vocabulary.topics,
+        layout: &scenario.layout(),
+    };
+    let (events, left_out) = told.events(&film.changes.roles);
     let targets = scenario.protocol.targets().into_iter();
     let targets = targets.flat_map(|targets| targets.places);
     let targets: Vec<[f64; 2]> = targets.map(|(place, _)| [place.x, place.y]).collect();
@@ -101,7 +112,7 @@ fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {
         "body_radius_m": scenario.motion.body_radius.get(),
         "obstacles": scenario.arena.obstacles.iter().map(obstacle).collect::<Vec<_>>(),
         "targets": targets,
-        "chains": chains(record),
+        "relies": relies(film),
         "robots": film.robots(),
         "roles": vocabulary.roles,
         "role_colours": (0..).zip(vocabulary.roles).map(|(index, name)| role_colour(name, index)).collect::<Vec<_>>(),
@@ -128,7 +139,7 @@ fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {
             "note": left_out_words(film, left_out),
         },
         "faults": events::faults(record),
-        "series": series(record),
+        "series": series(input, film),
         "events": events,
     })
 }
@@ -136,7 +147,12 @@ fn meta(input: &ReplayInput, film: &Film, toggles: Option<&Toggles>) -> Value {
 /// That messages are thinned out, and events cut off, if they are.
 fn left_out_words(film: &Film, events: u64) -> Option<String> {
     let messages = (film.one_of > 1).then(|| format!("One message of {} is shown.", number::count(film.one_of)));
-    let events = (events > 0).then(|| format!("{} later suspicions are not listed.", number::count(events)));
+    let events = (events > 0).then(|| {
+        format!(
+            "{} later changes of role and suspicions are not listed.",
+            number::count(events)
+        )
+    });
     let words: Vec<String> = messages.into_iter().chain(events).collect();
     (!words.is_empty()).then(|| words.join(" "))
 }
@@ -159,16 +175,17 @@ fn obstacle(config: &ObstacleConfig) -> Value {
     }
 }
 
-/// From each robot that works for a target at the end to those that it relies on.
-fn chains(record: &TrialRecord) -> Vec<[u32; 2]> {
-    let working = (0..).zip(&record.robots).filter(|(_, robot)| robot.target.is_some());
-    working
-        .flat_map(|(number, robot)| robot.parents.iter().map(move |parent| [number, parent.0]))
+/// Since when, seconds, which robot relies on which others: of robots that ever do.
+fn relies(film: &Film) -> Vec<(f64, u32, Vec<u32>)> {
+    let changes = film.changes.relies.iter().take(MOST_CHANGES);
+    changes
+        .map(|(at, robot, others)| (at.as_secs(), robot.0, others.iter().map(|other| other.0).collect()))
         .collect()
 }
 
 /// What changes over time: how well the swarm is connected, what it says.
-fn series(record: &TrialRecord) -> Vec<Value> {
+fn series(input: &ReplayInput, film: &Film) -> Vec<Value> {
+    let record = input.record;
     let samples = || record.connectivity.iter();
     let times: Vec<f64> = samples().map(|sample| sample.at.as_secs()).collect();
     let mut all = vec![
@@ -186,6 +203,12 @@ fn series(record: &TrialRecord) -> Vec<Value> {
         .collect();
     let (times, rates): (Vec<f64>, Vec<f64>) = entries.into_iter().unzip();
     all.push(json!({"name": "bytes sent", "unit": "B/s", "t": times, "v": rates}));
+    if let (Some(airtime), Some(radio)) = (&film.airtime, input.scenario.radio.shared()) {
+        let [_, message_header] = input.scenario.header_bytes();
+        let shares = airtime.series(&radio.phy(), message_header, record.simulated.as_secs());
+        let (times, shares): (Vec<f64>, Vec<f64>) = shares.into_iter().map(|(at, share)| (at, 100.0 * share)).unzip();
+        all.push(json!({"name": "on air, all robots together", "unit": "%", "t": times, "v": shares}));
+    }
     // What always has one value needs no chart.
     let varies = |values: &Vec<Value>| values.iter().any(|value| *value != values[0]);
     all.retain(|series| series["v"].as_array().is_some_and(varies));

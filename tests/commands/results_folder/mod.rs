@@ -14,3 +14,4 @@ mod read_back;
 mod replay;
 mod report;
 mod streams;
+mod trace;

@@ -43,7 +43,7 @@ struct Page {
 impl Page {
     fn of(scenario: &Scenario) -> (Self, TrialRecord) {
         let stop = CancellationToken::new();
-        let (record, film) = watch_trial(scenario, 0, Film::default(), &stop).expect("the trial reaches its end");
+        let (record, film) = watch_trial(scenario, 0, Film::of(scenario), &stop).expect("the trial reaches its end");
         let reach = reach(scenario, 0);
         let input = ReplayInput {
             scenario,

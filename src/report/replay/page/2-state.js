@@ -58,6 +58,25 @@ function spans(list, from, to) {
 const failed = spans(meta.faults, fault => fault.from, fault => fault.to);
 const suspected = spans(meta.events.filter(event => event.kind === 'suspicion'), event => event.t, event => event.until);
 
+/** Of each robot that ever relies on others, since when on which. */
+const relies = new Map();
+for (const [t, robot, others] of meta.relies) {
+  if (!relies.has(robot)) relies.set(robot, { t: [], others: [] });
+  relies.get(robot).t.push(t);
+  relies.get(robot).others.push(others);
+}
+
+/** Whom a robot relies on at a time. */
+function reliedOn(changes, t) {
+  let low = 0;
+  let high = changes.t.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (changes.t[middle] <= t) low = middle + 1; else high = middle;
+  }
+  return low > 0 ? changes.others[low - 1] : [];
+}
+
 const roles = { at: 0, value: new Uint8Array(robots), counts: new Int32Array(meta.roles.length), before: null, shown: meta.roles.map(() => true) };
 
 function prepareRoles() {

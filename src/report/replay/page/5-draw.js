@@ -46,14 +46,16 @@ function drawGround() {
 }
 
 function drawChains() {
-  // Chains are known as they were at the end, so they are drawn at no other time.
-  if (now.frame < steps || meta.chains.length === 0) return;
+  if (relies.size === 0) return;
   pen.strokeStyle = '#f0d9a0';
   pen.lineWidth = clamp(robotRadius() * 1.6, 7, 16);
   pen.lineJoin = pen.lineCap = 'round';
   pen.beginPath();
-  for (const chain of meta.chains) {
-    chain.forEach((robot, i) => (i === 0 ? pen.moveTo(screenX[robot], screenY[robot]) : pen.lineTo(screenX[robot], screenY[robot])));
+  for (const [robot, changes] of relies) {
+    for (const other of reliedOn(changes, now.t)) {
+      pen.moveTo(screenX[robot], screenY[robot]);
+      pen.lineTo(screenX[other], screenY[other]);
+    }
   }
   pen.stroke();
   pen.lineCap = 'butt';

@@ -49,7 +49,7 @@ function buildSide() {
   if (suspected.t.length) sign(signs, 'suspected', brush => { body(brush); brush.arc(10, 10, 7.5, 0.7, TURN - 0.7); });
   sign(signs, 'followed', brush => { body(brush); brush.lineWidth = 3; brush.arc(10, 10, 8, 0, TURN); });
   if (meta.targets.length) sign(signs, 'target', brush => { brush.moveTo(10, 2); brush.lineTo(18, 10); brush.lineTo(10, 18); brush.lineTo(2, 10); brush.closePath(); });
-  if (meta.chains.length) sign(signs, 'chain at the end', brush => { brush.strokeStyle = '#f0d9a0'; brush.lineWidth = 7; brush.moveTo(1, 10); brush.lineTo(19, 10); });
+  if (relies.size) sign(signs, 'relies on', brush => { brush.strokeStyle = '#f0d9a0'; brush.lineWidth = 7; brush.moveTo(1, 10); brush.lineTo(19, 10); });
   if (hasMessages) {
     byId('topic-part').hidden = false;
     meta.topics.forEach((topic, i) => topicCounts.push(choice(byId('topics'), meta.topic_colours[i], topic, true, on => {
@@ -135,6 +135,7 @@ function showRobot() {
     for (let i = 0; i < links.length; i++) if (links.a[i] === robot || links.b[i] === robot) degree++;
     rows.push(['Links', grouped.format(degree)]);
   }
+  if (relies.has(robot)) rows.push(['Relies on', reliedOn(relies.get(robot), now.t).join(', ') || 'nobody']);
   const faults = meta.faults.filter(fault => fault.robot === robot);
   if (faults.length) {
     rows.push(['Faults', faults.slice(0, 6).map(fault => words(fault.what) + ' ' + seconds(fault.from) + (fault.to === null ? ' to the end' : ' to ' + seconds(fault.to))).join('; ')]);

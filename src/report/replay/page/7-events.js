@@ -1,7 +1,7 @@
 // The list of events. There may be a hundred thousand, so only the rows in sight exist.
 
 const ROW = 26;
-const KINDS = { fault: '×', recovery: '+', suspicion: '?', trust: '=', done: '!', note: '·' };
+const KINDS = { fault: '×', recovery: '+', suspicion: '?', trust: '=', role: '→', done: '!', note: '·' };
 const list = { shown: new Int32Array(0), rows: [], current: -1, busyUntil: 0, off: new Set(), onlyRobot: false, times: Float64Array.from(meta.events, event => event.t) };
 
 function buildEvents() {
