@@ -69,7 +69,7 @@ fn scenarios() -> Vec<Scenario> {
     vec![
         scenario(&format!("{moving}, detector: Timeout(0.5), {disk}, {FAULTS}")),
         scenario(&format!(
-            "{moving}, detector: Swim(), gossip: (piggyback: true), {disk}, {FAULTS}"
+            "{moving}, detector: Swim(probe_interval: 2.5), gossip: (piggyback: true), {disk}, {FAULTS}"
         )),
         scenario(&format!("{moving}, detector: Timeout(0.5), {shared}, {FAULTS}")),
         scenario(&format!(
@@ -80,7 +80,7 @@ fn scenarios() -> Vec<Scenario> {
         )),
         scenario(&format!("{load}, radio: (range: 30.0, loss: Bernoulli(0.1))")),
         scenario(
-            "swarm: (robots: 20, deploy: Uniform), arena: (size: (6.0, 6.0)), protocol: Rumor(mode: Pull), gossip: (piggyback: true), radio: (loss: Bernoulli(0.2))",
+            "swarm: (robots: 20, deploy: Uniform), arena: (size: (6.0, 6.0)), protocol: Rumor(mode: Pull, completion: Reached), gossip: (piggyback: true), radio: (loss: Bernoulli(0.2))",
         ),
     ]
 }
