@@ -238,15 +238,15 @@ fn protocol() -> impl Strategy<Value = &'static str> {
          gossip: (piggyback: true, relay: (interval: 0.3, fan_out: Peers(1)))",
         "protocol: Rumor(sources: Robots([2]), rounds: Poisson, completion: Reached), gossip: (relay: (interval: 0.4))",
         "protocol: Backbone(targets: Ring(count: 2, radius: 2.0), completion: Held(0.5)), gossip: (piggyback: true)",
-        "protocol: Traffic(when: Poisson(5.0), payload: 20, to: Next)",
-        "protocol: Traffic(when: Poisson(5.0), payload: 20, to: Everyone)",
+        "protocol: Traffic(when: Poisson(5.0), payload: 8, to: Next)",
+        "protocol: Traffic(when: Poisson(5.0), payload: 8, to: Everyone)",
     ])
 }
 
 fn radio() -> impl Strategy<Value = &'static str> {
     prop::sample::select(vec![
-        "radio: (range: 1.5, loss: Bernoulli(0.3), latency: Uniform(min: 0.01, max: 0.3))",
-        "radio: (range: 1.2, loss: Distance(at_range: 0.6, exponent: 2), latency: Constant(0.0))",
+        "radio: (range: 2.0, loss: Bernoulli(0.3), latency: Uniform(min: 0.01, max: 0.3))",
+        "radio: (range: 2.2, loss: Distance(at_range: 0.6, exponent: 2), latency: Constant(0.0))",
         "radio: (range: 2.0, latency: Constant(1.2))",
         "radio: (technology: Ieee802154(), queue: 2, transmit_power: -25.0, fading: Rayleigh())",
         "radio: (technology: ArgosRab())",
@@ -278,14 +278,45 @@ fn whatever() -> impl Strategy<Value = String> {
     parts.prop_map(|(protocol, radio, faults, metrics, control, seed, tenths)| {
         let seconds = 2.0 + f64::from(tenths) / 10.0;
         format!(
-            "Scenario(name: \"any\", seed: {seed}, time_limit: {seconds:?}, arena: (size: (5.0, 5.0)), swarm: (robots: 10, deploy: Uniform), \
+            "Scenario(name: \"any\", seed: {seed}, time_limit: {seconds:?}, arena: (size: (6.0, 6.0)), swarm: (robots: 10, deploy: Uniform), \
              control: (period: 0.2, {control}), faults: [{faults}], metrics: ({metrics}, record: {ALL}), {radio}, {protocol})"
         )
     })
 }
 
+/// What one case may happen not to have, these do.
+#[test]
+fn what_the_tables_are_about_happens() {
+    let text = |sections: &str| {
+        format!(
+            "Scenario(name: \"full\", time_limit: 20.0, arena: (size: (6.0, 6.0)), control: (period: 0.2), \
+             metrics: (record: {ALL}), {sections})"
+        )
+    };
+    let rumours = check(&text(
+        "swarm: (robots: 12, deploy: Uniform), protocol: Rumor(sources: Random(3), completion: Reached), \
+         gossip: (piggyback: true, relay: (interval: 0.4)), \
+         radio: (technology: Ieee802154(), transmit_power: -46.0, fading: Rayleigh())",
+    ));
+    let second_hand = rumours.asked.hops.iter().filter(|hop| hop.hops > 1);
+    assert!(second_hand.count() > 5);
+    let mut fates = TopicFates::default();
+    let bands = rumours.asked.delivery.iter();
+    bands.clone().for_each(|band| fates.add(&band.fates));
+    let causes = fates.lost.iter().filter(|lost| **lost > 0).count();
+    assert!(bands.len() > 4 && causes > 1 && fates.delivered > 0, "{fates}");
+    let backbone = check(&text(
+        "swarm: (robots: 12, deploy: Cluster(radius: 0.9)), protocol: Backbone(targets: Ring(count: 2, radius: 1.0)), \
+         radio: (range: 2.0, loss: Bernoulli(0.1)), \
+         faults: [Crash(robots: [3, 4], at: 2.0, lasts: For(5.0))]",
+    ));
+    assert!(backbone.asked.roles.len() > backbone.robots.len() + 1);
+    let failed = backbone.asked.degree.iter().flat_map(|sample| sample.neighbours);
+    assert!(failed.filter(Option::is_none).count() > 5);
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
     fn every_table_adds_up_to_what_is_always_kept_whatever_the_scenario(text in whatever()) {
