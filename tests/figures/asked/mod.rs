@@ -86,7 +86,7 @@ fn assert_traffic(record: &TrialRecord) {
     rows.retain(|_, sum| *sum != [0; 4]);
     assert_eq!(sums, rows);
     // The first window holds the very start, and the last what nobody read; the others hold what the series does.
-    for series in record.series.iter() {
+    for series in &record.series {
         if series.since == SimTime::ZERO || series.at == record.simulated {
             continue;
         }
