@@ -73,6 +73,11 @@ pub trait Observer {
         false
     }
 
+    /// Whether it is [told](Self::offered) of each copy that is offered. If nobody is, nobody looks up how far robots are apart.
+    fn heeds_offers(&self) -> bool {
+        false
+    }
+
     /// The run begins, with everyone where `world` has them.
     fn begin(&mut self, world: &World) {}
 
@@ -87,6 +92,10 @@ pub trait Observer {
 
     /// All that `robot` says at `now` is on air, with everyone where `world` has them.
     fn spoke(&mut self, now: SimTime, robot: ActorId, world: &World) {}
+
+    /// A copy is offered to its receiver, whose `distance` from the sender, metres, is that at which the frame is handed to the radio: before anything else is told of the
+    /// copy. Told only if an observer [heeds](Self::heeds_offers) it, and then to all.
+    fn offered(&mut self, copy: &Copy, distance: f64) {}
 
     /// A copy will arrive at `at`, if its receiver can hear then. Told when the radio knows: as it is sent over the disk radio, later over one on which
     /// frames take time.

@@ -37,6 +37,10 @@ macro_rules! hand_on {
             $tell!(self, spoke(now, robot, world));
         }
 
+        fn offered(&mut self, copy: &Copy, distance: f64) {
+            $tell!(self, offered(copy, distance));
+        }
+
         #[allow(clippy::inline_always)]
         #[inline(always)]
         fn arrives(&mut self, copy: &Copy, at: SimTime) {
@@ -150,6 +154,10 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.0.judges() || self.1.judges()
     }
 
+    fn heeds_offers(&self) -> bool {
+        self.0.heeds_offers() || self.1.heeds_offers()
+    }
+
     fn judge(&mut self, step: u64, positions: &[Vec2]) -> bool {
         // Both are asked, whatever the first one says.
         self.0.judge(step, positions) | self.1.judge(step, positions)
@@ -166,6 +174,10 @@ impl<O: Observer> Observer for &mut O {
         (**self).judges()
     }
 
+    fn heeds_offers(&self) -> bool {
+        (**self).heeds_offers()
+    }
+
     fn judge(&mut self, step: u64, positions: &[Vec2]) -> bool {
         (**self).judge(step, positions)
     }
@@ -179,6 +191,10 @@ impl<O: Observer> Observer for Option<O> {
 
     fn judges(&self) -> bool {
         self.as_ref().is_some_and(Observer::judges)
+    }
+
+    fn heeds_offers(&self) -> bool {
+        self.as_ref().is_some_and(Observer::heeds_offers)
     }
 
     fn judge(&mut self, step: u64, positions: &[Vec2]) -> bool {

@@ -1,6 +1,7 @@
 //! What a run leaves behind: traffic, fates, connectivity, outcome, and the statistics over trials.
 
 mod air;
+mod asked;
 pub mod comparison;
 mod completion;
 mod config;
@@ -27,8 +28,9 @@ mod volume;
 
 pub use crate::statistics::Estimate;
 pub use air::{AirRecord, Copies, DistanceBand, ENERGY_STATES, LinkRecord, RobotAir, Waits};
+pub use asked::{Asked, DegreeSample, DelayEntry, DeliveryBand, Hop, RoleChange, TrafficEntry};
 pub use completion::Progress;
-pub use config::MetricsConfig;
+pub use config::{AskedTable, MetricsConfig};
 pub use connectivity::{Chains, Graph};
 pub use episode::{FaultEpisode, FaultKind, HealingEpisode};
 pub use latency::LatencyHistogram;

@@ -8,6 +8,7 @@ use crate::radio::{Placed, Reach};
 use crate::spool::{Entry, Spool, Spooled, entry};
 
 use super::air::AirRecord;
+use super::asked::Asked;
 use super::detection::{DetectionRecord, ObservedFailure, StatusTrace, Suspicion};
 use super::episode::{FaultEpisode, HealingEpisode};
 use super::latency::LatencyHistogram;
@@ -58,6 +59,9 @@ pub struct TrialRecord {
     /// What radios did, over a radio that keeps accounts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub air: Option<AirRecord>,
+    /// What else the scenario asks for, table by table.
+    #[serde(default, skip_serializing_if = "Asked::is_empty")]
+    pub asked: Asked,
     /// Connectivity at each sample time.
     pub connectivity: Spool<ConnectivitySample>,
     /// Traffic over time, in order of time.
@@ -303,17 +307,24 @@ pub struct Lists {
     connectivity: Spool<ConnectivitySample>,
     series: Spool<SeriesEntry>,
     trajectories: Spool<(SimTime, Vec<[f32; 2]>)>,
+    asked: Asked,
 }
 
 impl Lists {
     /// All of them, always in this order.
-    pub fn all(&mut self) -> [&mut dyn Spooled; 5] {
+    pub fn all(&mut self) -> [&mut dyn Spooled; 10] {
+        let [delays, degree, hops, traffic, roles] = self.asked.lists();
         [
             &mut self.suspicions,
             &mut self.failures,
             &mut self.connectivity,
             &mut self.series,
             &mut self.trajectories,
+            delays,
+            degree,
+            hops,
+            traffic,
+            roles,
         ]
     }
 }
@@ -327,5 +338,6 @@ impl TrialRecord {
         swap(&mut self.connectivity, &mut lists.connectivity);
         swap(&mut self.series, &mut lists.series);
         swap(&mut self.trajectories, &mut lists.trajectories);
+        self.asked.exchange_lists(&mut lists.asked);
     }
 }

@@ -30,22 +30,25 @@ impl Series {
         }
     }
 
-    /// Samples `traffic`.
-    pub(super) fn sample(&mut self, now: SimTime, traffic: &Traffic) {
+    /// Samples `traffic`; whether an entry ends here.
+    pub(super) fn sample(&mut self, now: SimTime, traffic: &Traffic) -> bool {
         if self.every == 0 {
-            return;
+            return false;
         }
         if self.skipped > 0 {
             self.skipped -= 1;
-            return;
+            return false;
         }
         self.skipped = self.every - 1;
         let present = traffic.by_robot_and_topic();
-        if let Some((since, before)) = self.last.take() {
+        let last = self.last.take();
+        let ends = last.is_some();
+        if let Some((since, before)) = last {
             self.entries
                 .push(&entry(since, now, &before, &present, traffic.topics()));
         }
         self.last = Some((now, present));
+        ends
     }
 
     pub(super) fn into_entries(self) -> Spool<SeriesEntry> {
@@ -156,7 +159,7 @@ mod tests {
     #[test]
     fn a_series_every_0_samples_is_none() {
         let mut series = Series::new(0, &Scratch::default());
-        (0..3).for_each(|second| series.sample(at(second), &traffic()));
+        assert!((0..3).all(|second| !series.sample(at(second), &traffic())));
         assert!(series.into_entries().is_empty());
     }
 

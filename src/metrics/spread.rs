@@ -29,20 +29,22 @@ impl Spread {
         Self(vec![unknown; rumors])
     }
 
-    /// `robot` knows `rumor` since `at`, and has it `from` another robot, if it did not begin there.
+    /// `robot` knows `rumor` since `at`, and has it `from` another robot, if it did not begin there: over how many transmissions it came, if that is new.
     ///
     /// # Panics
     /// If the run has no such rumour.
-    pub(super) fn inform(&mut self, robot: ActorId, rumor: u16, at: SimTime, from: Option<ActorId>) {
+    pub(super) fn inform(&mut self, robot: ActorId, rumor: u16, at: SimTime, from: Option<ActorId>) -> Option<u32> {
         let rumors = self.0.len();
         let spread = self.0.get_mut(usize::from(rumor));
         let spread = spread.unwrap_or_else(|| panic!("robot {robot} reported rumour {rumor}, one of {rumors}"));
-        if spread.informed[robot.index()].is_none() {
-            spread.informed[robot.index()] = Some(at);
-            // Who tells it knows it: 0 hops more than none that were ever told of it.
-            let before = from.map(|from| spread.hops[from.index()].unwrap_or(0));
-            spread.hops[robot.index()] = Some(before.map_or(0, |hops| hops + 1));
+        if spread.informed[robot.index()].is_some() {
+            return None;
         }
+        spread.informed[robot.index()] = Some(at);
+        // Who tells it knows it: 0 hops more than none that were ever told of it.
+        let before = from.map(|from| spread.hops[from.index()].unwrap_or(0));
+        spread.hops[robot.index()] = Some(before.map_or(0, |hops| hops + 1));
+        spread.hops[robot.index()]
     }
 
     /// Whether every live robot knows every rumour, and there is one.
@@ -75,13 +77,13 @@ mod tests {
                 0,
                 SimTime::from_secs(f64::from(robot)),
                 from.map(ActorId),
-            );
+            )
         };
-        inform(2, None);
-        inform(0, Some(2));
-        inform(1, Some(0));
-        inform(1, Some(2));
-        inform(3, Some(2));
+        assert_eq!(inform(2, None), Some(0));
+        assert_eq!(inform(0, Some(2)), Some(1));
+        assert_eq!(inform(1, Some(0)), Some(2));
+        assert_eq!(inform(1, Some(2)), None, "it knows it already");
+        assert_eq!(inform(3, Some(2)), Some(1));
         let [rumor] = &spread.into_records()[..] else {
             panic!("one rumour")
         };

@@ -77,6 +77,15 @@ pub(super) struct RobotTraffic {
     pub(super) received_bytes: u64,
 }
 
+/// Messages of a robot on a topic, and their bytes, headers included.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Flow {
+    pub(super) sent_frames: u64,
+    pub(super) sent_bytes: u64,
+    pub(super) received_frames: u64,
+    pub(super) received_bytes: u64,
+}
+
 /// The traffic of a trial, dense in robots × roles × topics. What is sent, received and lost stands apart: receptions,
 /// by far the most, then share a table small enough to stay in the cache.
 #[derive(Debug)]
@@ -201,6 +210,24 @@ impl Traffic {
             sum.received_bytes += self.received.volume(cell, self.headers).bytes();
         }
         sums
+    }
+
+    /// Messages and bytes of each robot on each topic, in whatever role: robot by robot, topic by topic.
+    pub(super) fn flows(&self) -> Vec<Flow> {
+        let mut flows = vec![Flow::default(); self.starts.len() * self.topics];
+        let per_robot = self.roles * self.topics;
+        for cell in 0..self.sent.counts.len() {
+            let flow = &mut flows[cell / per_robot * self.topics + cell % self.topics];
+            let (sent, received) = (
+                self.sent.volume(cell, self.headers),
+                self.received.volume(cell, self.headers),
+            );
+            flow.sent_frames += sent.frames;
+            flow.sent_bytes += sent.bytes();
+            flow.received_frames += received.frames;
+            flow.received_bytes += received.bytes();
+        }
+        flows
     }
 
     /// The cells that saw traffic, by robot, role, topic.

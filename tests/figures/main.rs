@@ -3,6 +3,7 @@
 #[path = "../shipped/mod.rs"]
 mod shipped;
 
+mod asked;
 mod detection;
 mod estimators;
 #[cfg(all(feature = "command", feature = "parquet"))]

@@ -350,6 +350,45 @@ fn links_that_the_radio_tells_nothing_of_are_warned_of() {
 }
 
 #[test]
+fn tables_that_stay_empty_or_tell_nothing_over_time_are_warned_of() {
+    let field = "metrics.record";
+    assert_warned(
+        "Heartbeat",
+        "metrics: (record: [Hops])",
+        field,
+        "no robot of this protocol notes",
+    );
+    assert_warned(
+        BACKBONE,
+        "metrics: (record: [Roles, Hops])",
+        field,
+        "Hops, which stays empty",
+    );
+    assert_warned(
+        "Heartbeat",
+        "metrics: (record: [Degree], sample_interval: 0.0)",
+        field,
+        "Degree, which stays empty: nothing is sampled",
+    );
+    for no_series in ["sample_interval: 0.0", "series_every: 0"] {
+        let found = warned(
+            "Heartbeat",
+            &format!("metrics: (record: [Traffic, Delays], {no_series})"),
+        );
+        assert_eq!(fields(&found), [field, field], "{found:?}");
+        assert!(found.diagnostics.iter().all(|one| one.message.contains("one window")));
+    }
+    assert!(
+        fields(&warned(
+            "Heartbeat",
+            "metrics: (record: [Delivery, Delays, Degree, Traffic, Roles])"
+        ))
+        .is_empty()
+    );
+    assert!(fields(&warned(RUMOR, "metrics: (record: [Hops])")).is_empty());
+}
+
+#[test]
 fn a_channel_that_lets_nothing_through_or_is_never_bad_is_warned_of() {
     assert_warned(
         "Heartbeat",

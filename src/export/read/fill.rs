@@ -2,7 +2,7 @@
 
 use super::records::Records;
 use super::table::{Table, Wrong};
-use super::{air, failures, swarm, traffic, trials};
+use super::{air, asked, failures, swarm, traffic, trials};
 
 /// How a table's rows are put into the records.
 pub type Fill = fn(&mut Records, &Table) -> Result<(), Wrong>;
@@ -23,11 +23,17 @@ pub const TABLES: [(&str, Fill); 11] = [
 ];
 
 /// Tables that are there only where there is something to put into them.
-pub const OPTIONAL: [(&str, Fill); 6] = [
+pub const OPTIONAL: [(&str, Fill); 12] = [
     ("notes.parquet", traffic::notes),
     ("pairs.parquet", traffic::pairs),
     ("radio.parquet", air::robots),
     ("waits.parquet", air::waits),
     ("distance.parquet", air::bands),
     ("links.parquet", air::links),
+    ("delivery.parquet", asked::delivery),
+    ("delays.parquet", asked::delays),
+    ("degree.parquet", asked::degree),
+    ("hops.parquet", asked::hops),
+    ("traffic.parquet", asked::traffic),
+    ("roles.parquet", asked::roles),
 ];

@@ -2,6 +2,7 @@
 //! were written from.
 
 mod air;
+mod asked;
 mod failures;
 mod fill;
 mod records;

@@ -4,7 +4,7 @@ use super::records::Records;
 use super::table::{Table, Wrong};
 use crate::engine::{SimTime, Span};
 use crate::metrics::detection::DetectionRecord;
-use crate::metrics::{LatencyHistogram, Outcome, TopicFates, TrialRecord};
+use crate::metrics::{Asked, LatencyHistogram, Outcome, TopicFates, TrialRecord};
 use crate::spool::Spool;
 
 /// Begins a record for each row of `trials.parquet`.
@@ -48,6 +48,7 @@ pub fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             noted: Vec::new(),
             pairs: Vec::new(),
             air: None,
+            asked: Asked::default(),
             connectivity: Spool::default(),
             series: Spool::default(),
             robots: Vec::new(),

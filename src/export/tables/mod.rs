@@ -1,6 +1,7 @@
 //! The tables of a results folder, filled a trial at a time, in order of trials.
 
 mod air;
+mod asked;
 mod bandwidth;
 mod connectivity;
 mod detection;
@@ -44,6 +45,12 @@ pub struct Tables {
     waits: Later<air::Bucket>,
     distance: Later<air::Band>,
     links: Later<air::Link>,
+    delivery: Later<asked::Delivery>,
+    delays: Later<asked::Delays>,
+    degree: Later<asked::Degree>,
+    hops: Later<asked::Learnt>,
+    traffic: Later<asked::Traffic>,
+    roles: Later<asked::Entered>,
 }
 
 impl Tables {
@@ -63,13 +70,19 @@ impl Tables {
         "spread.parquet",
     ];
     /// Names of the files that are there only where there is something to put into them.
-    pub const OPTIONAL: [&str; 6] = [
+    pub const OPTIONAL: [&str; 12] = [
         "notes.parquet",
         "pairs.parquet",
         "radio.parquet",
         "waits.parquet",
         "distance.parquet",
         "links.parquet",
+        "delivery.parquet",
+        "delays.parquet",
+        "degree.parquet",
+        "hops.parquet",
+        "traffic.parquet",
+        "roles.parquet",
     ];
 
     /// Starts the tables in folder `dir`, for a mission with `targets` targets.
@@ -98,6 +111,12 @@ impl Tables {
             waits: Later::new(dir, Self::OPTIONAL[3], air::wait_columns),
             distance: Later::new(dir, Self::OPTIONAL[4], air::band_columns),
             links: Later::new(dir, Self::OPTIONAL[5], air::link_columns),
+            delivery: Later::new(dir, Self::OPTIONAL[6], asked::delivery_columns),
+            delays: Later::new(dir, Self::OPTIONAL[7], asked::delay_columns),
+            degree: Later::new(dir, Self::OPTIONAL[8], asked::degree_columns),
+            hops: Later::new(dir, Self::OPTIONAL[9], asked::hop_columns),
+            traffic: Later::new(dir, Self::OPTIONAL[10], asked::traffic_columns),
+            roles: Later::new(dir, Self::OPTIONAL[11], asked::role_columns),
         })
     }
 
@@ -123,7 +142,13 @@ impl Tables {
         self.radio.extend(air::robots(record))?;
         self.waits.extend(air::waits(record))?;
         self.distance.extend(air::bands(record))?;
-        self.links.extend(air::links(record))
+        self.links.extend(air::links(record))?;
+        self.delivery.extend(asked::delivery(record, &self.names))?;
+        self.delays.extend(asked::delays(record, &self.names))?;
+        self.degree.extend(asked::degree(record))?;
+        self.hops.extend(asked::hops(record))?;
+        self.traffic.extend(asked::traffic(record, &self.names))?;
+        self.roles.extend(asked::roles(record, &self.names))
     }
 
     /// Ends every file, and answers the names of those that there are.
@@ -150,6 +175,12 @@ impl Tables {
             self.waits.finish()?,
             self.distance.finish()?,
             self.links.finish()?,
+            self.delivery.finish()?,
+            self.delays.finish()?,
+            self.degree.finish()?,
+            self.hops.finish()?,
+            self.traffic.finish()?,
+            self.roles.finish()?,
         ];
         Ok(Self::FILES.into_iter().chain(later.into_iter().flatten()).collect())
     }

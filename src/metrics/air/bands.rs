@@ -11,7 +11,7 @@ const BETWEEN: [u32; PER_DOUBLING as usize - 1] = [0x18_37f0, 0x35_04f3, 0x57_44
 
 /// Bands of distance, four from one distance to twice that.
 #[derive(Debug)]
-pub(super) struct Bands {
+pub struct Bands {
     /// Where they end, metres.
     ends: Vec<f64>,
 }

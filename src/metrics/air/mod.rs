@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use super::latency::LatencyHistogram;
 use crate::engine::ActorId;
 use crate::radio::{Account, Conclusion, Outcome, Reading};
-use bands::Bands;
+pub(super) use bands::Bands;
 
 /// The book of a run.
 #[derive(Debug)]

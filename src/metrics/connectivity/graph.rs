@@ -2,6 +2,7 @@
 
 use petgraph::unionfind::UnionFind;
 
+use crate::engine::ActorId;
 use crate::geometry::{Vec2, at_most};
 use crate::radio::{Placed, Reach};
 
@@ -42,22 +43,36 @@ impl Graph {
             Reach::Disk(range) => Self::within_range(&robots.map(|(_, place)| place).collect::<Vec<_>>(), *range),
             Reach::Links(_) => {
                 let linked = |a: &Placed, b: &Placed| reach.linked(*a, *b);
-                Self::swept(robots.collect(), |robot| robot.1, reach.farthest(), linked)
+                Self::swept(
+                    &mut robots.collect::<Vec<_>>(),
+                    |robot| robot.1,
+                    reach.farthest(),
+                    linked,
+                )
             }
         }
+    }
+
+    /// The graph as [`of_reach`](Self::of_reach) has it, and which robot each vertex is.
+    #[must_use]
+    pub fn with_robots(robots: impl Iterator<Item = Placed>, reach: &Reach) -> (Self, Vec<ActorId>) {
+        let mut robots: Vec<Placed> = robots.collect();
+        let linked = |a: &Placed, b: &Placed| matches!(reach, Reach::Disk(_)) || reach.linked(*a, *b);
+        let graph = Self::swept(&mut robots, |robot| robot.1, reach.farthest(), linked);
+        (graph, robots.into_iter().map(|robot| robot.0).collect())
     }
 
     /// The unit-disk graph of the paper's section 3.1: an edge where two positions are [at most](at_most) `range` metres apart. Vertices are
     /// numbered as in [`of_reach`](Self::of_reach).
     #[must_use]
     pub fn within_range(positions: &[Vec2], range: f64) -> Self {
-        Self::swept(positions.to_vec(), |place| *place, range, |_, _| true)
+        Self::swept(&mut positions.to_vec(), |place| *place, range, |_, _| true)
     }
 
-    /// An edge where two of `points` are at most `range` metres apart and `linked`.
-    fn swept<T>(mut points: Vec<T>, place: impl Fn(&T) -> Vec2, range: f64, linked: impl Fn(&T, &T) -> bool) -> Self {
+    /// An edge where two of `points` are at most `range` metres apart and `linked`. They are put in the order of the vertices.
+    fn swept<T>(points: &mut [T], place: impl Fn(&T) -> Vec2, range: f64, linked: impl Fn(&T, &T) -> bool) -> Self {
         let range = at_most(range);
-        let axis = longer_axis(&points, &place);
+        let axis = longer_axis(points, &place);
         points.sort_by(|a, b| place(a)[axis].total_cmp(&place(b)[axis]));
         let mut edges = Vec::with_capacity(4 * points.len());
         for (i, a) in points.iter().enumerate() {
@@ -85,6 +100,17 @@ impl Graph {
     #[must_use]
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.edges
+    }
+
+    /// Edges at each vertex.
+    #[must_use]
+    pub fn degrees(&self) -> Vec<u32> {
+        let mut degrees = vec![0; self.vertices];
+        for &[a, b] in &self.edges {
+            degrees[a as usize] += 1;
+            degrees[b as usize] += 1;
+        }
+        degrees
     }
 
     /// Edges at a vertex, mean over vertices; 0 without vertices.

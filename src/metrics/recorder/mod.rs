@@ -1,20 +1,24 @@
 //! The recorder: told of everything that happens in a run, it leaves a [`TrialRecord`].
 
 mod closing;
+mod layout;
 mod observer;
+
+pub use layout::{Layout, RunEnd};
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::faults::{Change, Subject};
-use crate::geometry::{Pose, Vec2};
+use crate::geometry::Vec2;
 use crate::happenings::Inbox;
 use crate::motion::World;
-use crate::protocol::{CompletionConfig, MessageSize, Note, Topic};
+use crate::protocol::{MessageSize, Note, Topic};
 use crate::radio::{LossCause, Reach};
-use crate::spool::{Scratch, Spool};
+use crate::spool::Spool;
 
 use closing::{ledger, robots};
 
 use super::air::Air;
+use super::asked::{Books, Hop};
 use super::completion::{Hearing, Judge, Progress};
 use super::config::MetricsConfig;
 use super::connectivity::Graph;
@@ -22,66 +26,13 @@ use super::detection::{Scorer, Watching};
 use super::faults::Failures;
 use super::healing::Healing;
 use super::latency::LatencyHistogram;
-use super::mission::{Mission, Scene};
+use super::mission::Scene;
 use super::noted::Notes;
-use super::pairs::Pairs;
 use super::record::{ConnectivitySample, Outcome, TrialRecord};
 use super::reports::Reports;
 use super::series::Series;
 use super::spread::Spread;
-use super::traffic::{HeaderBytes, Traffic};
-
-/// The shape of a run, known before it starts.
-#[derive(Clone, Debug)]
-pub struct Layout {
-    /// Number of robots.
-    pub robots: usize,
-    /// Number of topics of the protocol.
-    pub topics: usize,
-    /// Number of roles of the protocol.
-    pub roles: usize,
-    /// Bytes of headers on air.
-    pub headers: HeaderBytes,
-    /// Who is in range of whom.
-    pub reach: Reach,
-    /// Length of a control step.
-    pub control_period: Span,
-    /// What the swarm is asked to do, if anything.
-    pub mission: Option<Mission>,
-    /// How many rumours there are that all robots are to know; 0 for none.
-    pub rumors: usize,
-    /// When the mission, or the spread of the rumours, is complete.
-    pub completion: CompletionConfig,
-    /// How far back a suspicion is traced to the statuses that were missed.
-    pub status_memory: Span,
-    /// How long the robots' failure detector waits for a status before it suspects.
-    pub patience: Span,
-    /// The topic of the statuses that the robots' failure detector listens to, if they run one.
-    pub status: Option<Topic>,
-    /// Where what grows with simulated time has its files.
-    pub scratch: Scratch,
-}
-
-/// What only the hub knows when a run is over.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RunEnd {
-    /// Number of the trial, from 0.
-    pub trial: u32,
-    /// Seed of the experiment.
-    pub seed: u64,
-    /// Control steps simulated.
-    pub steps: u64,
-    /// Simulated time at the end.
-    pub simulated: SimTime,
-    /// Events handled.
-    pub events: u64,
-    /// Digest of every event, in order.
-    pub digest: u128,
-    /// Control steps of each robot that were due, in order of ids.
-    pub robot_steps: Vec<u64>,
-    /// Where every robot is, in order of ids.
-    pub poses: Vec<Pose>,
-}
+use super::traffic::Traffic;
 
 /// Accounts for one run.
 #[derive(Debug)]
@@ -102,7 +53,8 @@ pub struct Recorder {
     judge: Option<Judge>,
     spread: Spread,
     notes: Notes,
-    pairs: Option<Pairs>,
+    /// What only some scenarios ask for.
+    asked: Option<Box<Books>>,
     /// Begun when the radio tells something.
     air: Option<Box<Air>>,
     robots: usize,
@@ -156,7 +108,7 @@ impl Recorder {
             air: None,
             robots: layout.robots,
             links: config.links,
-            pairs: config.pairs.then(|| Pairs::new(layout.robots, layout.status)),
+            asked: Books::new(config, layout.robots, layout.topics, layout.status, &scratch),
             everyone_knows: (rumors > 0).then(|| Hearing::new(rumors, completion, control_period)),
             connectivity: Spool::new(&scratch),
             series: Series::new(config.series_every, &scratch),
@@ -214,12 +166,25 @@ impl Recorder {
         match *note {
             Note::Role(role) => self.traffic.enter(robot, role),
             Note::Duplicate { topic, size } => self.traffic.duplicate(robot, topic, size),
-            Note::Informed { rumor, at, from } => self.spread.inform(robot, rumor, at, from),
+            Note::Informed { rumor, at, from } => self.informed(robot, rumor, at, from),
             Note::Count { name, n } => self.notes.count(robot, name, n),
             Note::Value { name, value } => self.notes.value(robot, name, value),
             _ => {}
         }
         self.reports.note(robot, note);
+    }
+
+    fn informed(&mut self, robot: ActorId, rumor: u16, at: SimTime, parent: Option<ActorId>) {
+        let hops = self.spread.inform(robot, rumor, at, parent);
+        if let (Some(hops), Some(asked)) = (hops, &mut self.asked) {
+            asked.informed(&Hop {
+                rumor,
+                robot,
+                at,
+                parent,
+                hops,
+            });
+        }
     }
 
     /// A fault began or ended at `now`, with every robot at its place in `positions`.
@@ -270,7 +235,14 @@ impl Recorder {
     pub fn sample(&mut self, now: SimTime, positions: &[Vec2]) {
         let robots = (0..).map(ActorId).zip(positions.iter().copied());
         let live = robots.filter(|(robot, _)| self.failures.is_live(*robot));
-        let graph = Graph::of_reach(live, &self.reach);
+        let graph = match &mut self.asked {
+            Some(asked) if asked.heeds_degrees() => {
+                let (graph, who) = Graph::with_robots(live, &self.reach);
+                asked.sampled(now, positions.len(), &graph, &who);
+                graph
+            }
+            _ => Graph::of_reach(live, &self.reach),
+        };
         let (components, neighbours) = (graph.components() as u32, graph.mean_degree());
         let lambda2 = self.lambda2(graph);
         let scene = Scene::new(&self.reports, &self.failures, positions, &self.reach);
@@ -289,7 +261,10 @@ impl Recorder {
                 .as_ref()
                 .map_or_else(Vec::new, |judge| judge.mission.stands(scene)),
         });
-        self.series.sample(now, &self.traffic);
+        let window_ends = self.series.sample(now, &self.traffic);
+        if let (true, Some(asked)) = (window_ends, &mut self.asked) {
+            asked.window_ends(now, &self.traffic);
+        }
         self.trajectories
             .push(&(now, positions.iter().map(|p| [p.x, p.y].map(for_pictures)).collect()));
     }
@@ -336,6 +311,8 @@ impl Recorder {
     /// If on some topic the copies offered are not those delivered, lost and in flight: the simulator itself is wrong.
     #[must_use]
     pub fn finish(self, end: RunEnd) -> TrialRecord {
+        let asked = self.asked.map(|asked| asked.into_records(end.simulated, &self.traffic));
+        let (pairs, asked) = asked.unwrap_or_default();
         let traffic = self.traffic.rows();
         let ledger = ledger(&self.offered, &self.in_flight, &traffic);
         for (topic, fates) in ledger.iter().enumerate() {
@@ -368,8 +345,9 @@ impl Recorder {
             healing: self.healing.into_episodes(),
             spread: self.spread.into_records(),
             noted: self.notes.into_records(),
-            pairs: self.pairs.map_or_else(Vec::new, Pairs::into_records),
+            pairs,
             air: self.air.map(|air| air.into_record()),
+            asked,
             connectivity: self.connectivity,
             series: self.series.into_entries(),
             robots: robots(self.reports, end.poses, &end.robot_steps),

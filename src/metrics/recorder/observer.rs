@@ -19,11 +19,18 @@ impl Observer for Recorder {
         self.judge.is_some() || self.everyone_knows.is_some()
     }
 
+    fn heeds_offers(&self) -> bool {
+        self.asked.as_ref().is_some_and(|asked| asked.heeds_offers())
+    }
+
     fn begin(&mut self, world: &World) {
         self.begin(world);
     }
 
     fn noted<H>(&mut self, now: SimTime, robot: ActorId, note: &Note, inbox: &Inbox<'_, H>) {
+        if let Some(asked) = &mut self.asked {
+            asked.noted(now, robot, self.reports.roles[robot.index()], note);
+        }
         self.note(robot, note);
         self.belief(now, robot, note, inbox);
     }
@@ -38,12 +45,18 @@ impl Observer for Recorder {
         self.offered(message.topic, message.copies);
     }
 
+    fn offered(&mut self, copy: &Copy, distance: f64) {
+        if let Some(asked) = &mut self.asked {
+            asked.offered(*copy, distance);
+        }
+    }
+
     #[allow(clippy::inline_always)]
     #[inline(always)]
     fn lost(&mut self, copy: &Copy, cause: LossCause, _: SimTime) {
         self.lost(copy.receiver, copy.topic, cause, copy.size);
-        if let Some(pairs) = &mut self.pairs {
-            pairs.lost(*copy);
+        if let Some(asked) = &mut self.asked {
+            asked.lost(*copy, cause);
         }
         if self.status == Some(copy.topic) {
             self.status_lost(copy.receiver, copy.sender, copy.sequence, cause);
@@ -54,8 +67,8 @@ impl Observer for Recorder {
     #[inline(always)]
     fn delivered(&mut self, copy: &Copy, at: SimTime, read: Option<SimTime>) {
         self.delivered(copy.receiver, copy.topic, copy.size, copy.latency(at));
-        if let Some(pairs) = &mut self.pairs {
-            pairs.delivered(*copy, at, read.is_some());
+        if let Some(asked) = &mut self.asked {
+            asked.delivered(*copy, at, read.is_some());
         }
     }
 
@@ -65,8 +78,8 @@ impl Observer for Recorder {
 
     fn in_flight(&mut self, copy: &Copy, at: Option<SimTime>) {
         self.in_flight(copy.topic, at.map(|at| copy.latency(at)));
-        if let Some(pairs) = &mut self.pairs {
-            pairs.in_flight(*copy);
+        if let Some(asked) = &mut self.asked {
+            asked.in_flight(*copy);
         }
     }
 

@@ -1,8 +1,11 @@
 use super::*;
 use crate::faults::{Effect, Health};
+use crate::geometry::Pose;
+use crate::metrics::Mission;
 use crate::metrics::figures::Registry;
+use crate::metrics::traffic::HeaderBytes;
 use crate::metrics::volume::TopicFates;
-use crate::protocol::Role;
+use crate::protocol::{CompletionConfig, Role};
 use crate::spool::Scratch;
 
 const RANGE: f64 = 2.0;

@@ -44,6 +44,7 @@ impl<'a> Trials<'a> {
         self.radios.count(&record);
         record.exchange(&mut Lists::default());
         record.pairs = Vec::new();
+        record.asked.delivery = Vec::new();
         record.air = None;
         self.records.push(record);
     }

@@ -42,6 +42,11 @@ const KEPT: f64 = 0.3;
 const BETWEEN: f64 = 6500.0;
 /// Of what became of copies on a link.
 const LINK: f64 = 600.0;
+/// Of a row of a table that is asked for, where it is written, and where it is listed.
+const ASKED: f64 = 190.0;
+const ASKED_LISTED: f64 = 60.0;
+/// Of a copy under way whose distance is kept.
+const PLACED: f64 = 30.0;
 
 /// What a scenario asks of a machine.
 struct Needs {
@@ -143,6 +148,17 @@ impl Needs {
                 help: "leave out `metrics.links`",
             },
             Share {
+                what: "tables that it asks for",
+                bytes: view
+                    .asked()
+                    .map(|all| rows(all) * ASKED + list(all * ASKED_LISTED))
+                    .sum::<f64>()
+                    + view.placed() * PLACED,
+                field: "metrics.record",
+                also: &["metrics.sample_interval", "metrics.series_every", "swarm.robots"],
+                help: "ask for fewer tables in `metrics.record`",
+            },
+            Share {
                 what: "failures and who notices them",
                 bytes: view.failures(),
                 field: "faults",
@@ -173,6 +189,7 @@ impl Needs {
             + view.failures()
             + list(view.samples * LISTED)
             + list(view.entries() * view.topics() * LISTED)
+            + view.asked().map(|all| list(all * ASKED_LISTED)).sum::<f64>()
             + view.robots * ROBOT * KEPT;
         shares.push(Share {
             what: "the other trials, until all are finished",

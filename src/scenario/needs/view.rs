@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use super::super::Scenario;
 use crate::engine::Span;
 use crate::faults::{LastsConfig, WhenConfig};
+use crate::metrics::AskedTable;
 use crate::motion::DeployConfig;
 use crate::protocol::control::WakeConfig;
 use crate::protocol::detector::DetectorConfig;
@@ -73,6 +74,27 @@ impl<'a> View<'a> {
     pub fn links(&self) -> f64 {
         let wanted = self.scenario.metrics.links && self.scenario.radio.shared().is_some();
         if wanted { self.pairs } else { 0.0 }
+    }
+
+    /// Rows of each table that the scenario asks for, but for those that are short or follow robots' words.
+    pub fn asked(&self) -> impl Iterator<Item = f64> {
+        let topics = self.topics() - 1.0;
+        let windows = self.entries() + 1.0;
+        let tables = [
+            (AskedTable::Delays, windows * topics),
+            (AskedTable::Degree, self.samples * self.robots),
+            (AskedTable::Hops, self.robots),
+            (AskedTable::Traffic, windows * topics * self.robots),
+            (AskedTable::Roles, self.robots),
+        ];
+        let wanted = |(table, _): &(AskedTable, f64)| self.scenario.metrics.record.contains(table);
+        tables.into_iter().filter(wanted).map(|(_, rows)| rows)
+    }
+
+    /// Copies under way at once whose distance is kept.
+    pub fn placed(&self) -> f64 {
+        let wanted = self.scenario.metrics.record.contains(&AskedTable::Delivery);
+        if wanted { self.copies() } else { 0.0 }
     }
 
     fn moves(&self) -> bool {

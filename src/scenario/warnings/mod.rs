@@ -6,7 +6,7 @@ mod time;
 
 use super::{Scenario, needs};
 use crate::kind::Problem;
-use crate::metrics::MetricsConfig;
+use crate::metrics::{AskedTable, MetricsConfig};
 use crate::motion::MotionConfig;
 use crate::radio::{LossConfig, SensingConfig};
 
@@ -15,6 +15,7 @@ pub fn warnings(scenario: &Scenario) -> Vec<Problem> {
     let mut found = unread(scenario);
     found.extend(losses(scenario));
     found.extend(links(scenario));
+    found.extend(tables(scenario));
     found.extend(time::warnings(scenario));
     found.extend(place::warnings(scenario));
     found.extend(scenario.protocol.warnings(&scenario.sections(), scenario.completion()));
@@ -53,6 +54,32 @@ fn links(scenario: &Scenario) -> Option<Problem> {
         let help = "leave `metrics.links` out, say `metrics: (pairs: true)`, or give the radio a technology";
         Problem::new("metrics.links", message, help).with(&["radio"])
     })
+}
+
+/// Tables that are asked for and can only be empty, or tell nothing over time.
+fn tables(scenario: &Scenario) -> Vec<Problem> {
+    let Scenario { metrics, protocol, .. } = scenario;
+    let spreads = protocol.mission().is_some() && protocol.targets().is_none();
+    let sampled = metrics.sample_interval.get() > 0.0;
+    let series = sampled && metrics.series_every > 0;
+    let unknown = "which stays empty: no robot of this protocol notes that it knows a rumour";
+    let unsampled = "which stays empty: nothing is sampled";
+    let at_once = "over time, and all of a trial is one window of it: there is no series";
+    let all = [
+        (AskedTable::Hops, spreads, unknown, "protocol"),
+        (AskedTable::Degree, sampled, unsampled, "metrics.sample_interval"),
+        (AskedTable::Delays, series, at_once, "metrics.series_every"),
+        (AskedTable::Traffic, series, at_once, "metrics.series_every"),
+    ];
+    let in_vain = all
+        .into_iter()
+        .filter(|(table, is_of_use, ..)| metrics.record.contains(table) && !is_of_use);
+    let told = in_vain.map(|(table, _, why, also)| {
+        let message = format!("`metrics.record` asks for {table:?}, {why}");
+        let help = format!("leave {table:?} out of `metrics.record`, or change `{also}`");
+        Problem::new("metrics.record", message, help).with(&[also])
+    });
+    told.collect()
 }
 
 /// Settings that differ from their defaults and that nothing reads with this protocol.

@@ -91,7 +91,7 @@ impl<P: Protocol> Air<P> {
         }
         let everyone = P::OVERHEARS || aboard.iter().any(|spoken| spoken.to.is_none());
         if everyone || !self.medium.takes_far() {
-            self.give_up_far(now, aboard, observer);
+            self.give_up_far(now, aboard, place, observer);
         }
         if !everyone {
             self.narrow(aboard);
@@ -107,13 +107,24 @@ impl<P: Protocol> Air<P> {
     }
 
     /// Loses what is for robots out of range.
-    fn give_up_far(&mut self, now: SimTime, aboard: &[Spoken<P::Heard>], observer: &mut impl Observer) {
+    fn give_up_far(
+        &mut self,
+        now: SimTime,
+        aboard: &[Spoken<P::Heard>],
+        surroundings: Surroundings<'_>,
+        observer: &mut impl Observer,
+    ) {
         for (place, spoken) in aboard.iter().enumerate() {
             let Some(far) = spoken.to.filter(|to| !self.is_in_range(*to)) else {
                 continue;
             };
             if aboard[..place].iter().all(|earlier| earlier.to != Some(far)) {
+                let distance = || (surroundings.world.position(far, now) - self.position).norm();
+                let distance = observer.heeds_offers().then(distance);
                 for at_receiver in copies_for::<P, true>(far, false, aboard) {
+                    if let Some(distance) = distance {
+                        observer.offered(&at_receiver.copy(far), distance);
+                    }
                     observer.lost(&at_receiver.copy(far), LossCause::BelowSensitivity, now);
                 }
             }
@@ -192,6 +203,9 @@ impl<P: Protocol> Air<P> {
         let Frame { sender, sequence, .. } = aboard[0].frame;
         let number = Numbers::next(&mut self.numbers[sender.index()].frame);
         let in_range = self.listeners.len();
+        if observer.heeds_offers() {
+            self.tell_offers::<ADDRESSED>(aboard, observer);
+        }
         if !self.beyond.is_empty() && aboard.iter().any(|spoken| spoken.to.is_none()) {
             self.add_beyond(now, sender, place);
         }
@@ -259,6 +273,16 @@ impl<P: Protocol> Air<P> {
         }
         if !self.fates.conclusions.is_empty() {
             self.tell_conclusions(now, observer);
+        }
+    }
+
+    /// Tells of the copies that the present listeners are offered.
+    #[inline(never)]
+    fn tell_offers<const ADDRESSED: bool>(&self, aboard: &[Spoken<P::Heard>], observer: &mut impl Observer) {
+        for listener in &self.listeners {
+            for at_receiver in copies_for::<P, ADDRESSED>(listener.id, true, aboard) {
+                observer.offered(&at_receiver.copy(listener.id), listener.sender.norm());
+            }
         }
     }
 

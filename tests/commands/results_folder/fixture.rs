@@ -1,6 +1,7 @@
 //! Made-up trials: quick, and with every kind of value that a record can hold.
 
 mod air;
+mod asked;
 
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -64,6 +65,7 @@ pub fn record(trial: u32) -> TrialRecord {
         noted: noted(trial),
         pairs: pairs(trial),
         air: Some(air::air(trial)),
+        asked: asked::asked(trial),
         detection: detection(trial),
         trace: None,
         connectivity: (0..SAMPLES).map(|sample| connectivity(sample, odd)).collect(),

@@ -2,6 +2,7 @@
 //! is about folders with their tables, which a build without Parquet does not write.
 
 mod air;
+mod asked;
 mod command;
 mod documentation;
 mod explain;
