@@ -24,7 +24,7 @@ mod table;
 mod tables;
 mod write;
 
-pub use files::{PAGE, REPLAY};
+pub use files::{PAGE, REPLAY, replay_page};
 pub use folder::{Contents, Folder};
 pub use held::{FileEntry, sealed};
 pub use manifest::{Difference, Manifest, TrialEntry, program};

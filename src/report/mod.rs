@@ -22,7 +22,7 @@ mod validation;
 pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 #[cfg(feature = "command")]
-pub use html::{PAGE_MARK, PageInput, page, study_page};
+pub use html::{PAGE_MARK, PageInput, SettingTrials, Watch, page, study_page};
 pub use layout::message;
 pub use missed::Asked;
 pub use preflight::preflight;

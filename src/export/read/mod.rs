@@ -2,6 +2,7 @@
 //! were written from.
 
 mod air;
+mod comparison;
 mod failures;
 mod fill;
 mod records;
@@ -13,6 +14,7 @@ mod trials;
 use std::collections::BTreeMap;
 use std::fs::File;
 
+pub use comparison::told;
 pub use records::NameLists;
 
 use crate::metrics::TrialRecord;
