@@ -43,7 +43,7 @@ DRAWN = """() => [...document.querySelectorAll('figure')].flatMap(figure => {
         const area = div.querySelector('.nsewdrag').getBoundingClientRect();
         const count = selector => [...div.querySelectorAll(selector)]
             .filter(mark => shown(mark) && inside(mark.getBoundingClientRect(), area)).length;
-        const labels = [...div.querySelectorAll('.xtick text, .ytick text, .y2tick text, .textpoint text, .legendtext')].filter(shown);
+        const labels = [...div.querySelectorAll('.xtick text, .ytick text, .y2tick text, .xtitle, .ytitle, .textpoint text, .legendtext')].filter(shown);
         const boxes = labels.map(label => [label.textContent, label.getBoundingClientRect()]);
         // Corners on the screen, as far as letters reach: names along an axis may be turned.
         const corners = label => {
