@@ -3,7 +3,8 @@
 
 open_pages.py PICTURES PAGE...: pictures go to the folder PICTURES. Exit status 1 if a page has an error, asks for
 anything from outside, does not draw a chart, draws fewer settings, levels or points than the table of its figure has rows, has labels
-that overlap, or scrolls sideways.
+that overlap, a chart that shows one value, or a chart over time without the failures and suspicions that another has, or scrolls
+sideways. The SVG pictures beside each page, and those of the settings below it, may not have words that overlap either.
 """
 
 import pathlib
@@ -42,10 +43,25 @@ DRAWN = """() => [...document.querySelectorAll('figure')].flatMap(figure => {
         const area = div.querySelector('.nsewdrag').getBoundingClientRect();
         const count = selector => [...div.querySelectorAll(selector)]
             .filter(mark => shown(mark) && inside(mark.getBoundingClientRect(), area)).length;
-        const labels = [...div.querySelectorAll('.xtick text, .ytick text, .textpoint text, .legendtext')].filter(shown);
+        const labels = [...div.querySelectorAll('.xtick text, .ytick text, .y2tick text, .xtitle, .ytitle, .textpoint text, .legendtext')].filter(shown);
         const boxes = labels.map(label => [label.textContent, label.getBoundingClientRect()]);
-        const overlaps = boxes.flatMap(([name, a], place) => boxes.slice(place + 1)
-            .filter(([_, b]) => a.left < b.right - 1.5 && b.left < a.right - 1.5 && a.top < b.bottom - 1.5 && b.top < a.bottom - 1.5)
+        // Corners on the screen, as far as letters reach: names along an axis may be turned.
+        const corners = label => {
+            const box = label.getBBox(), matrix = label.getScreenCTM(), inset = 2;
+            const [left, right, top, bottom] = [box.x + inset, box.x + box.width - inset, box.y + inset, box.y + box.height - inset];
+            return [[left, top], [right, top], [right, bottom], [left, bottom]]
+                .map(([x, y]) => [matrix.a * x + matrix.c * y + matrix.e, matrix.b * x + matrix.d * y + matrix.f]);
+        };
+        const shapes = labels.map(corners);
+        // Two rectangles are apart if they are along a side of one of them.
+        const apart = (a, b) => [a, b].some(shape => [0, 1].some(side => {
+            const along = [shape[side + 1][0] - shape[side][0], shape[side + 1][1] - shape[side][1]];
+            const reach = other => other.map(([x, y]) => x * along[0] + y * along[1]);
+            const [one, two] = [reach(a), reach(b)];
+            return Math.max(...one) <= Math.min(...two) || Math.max(...two) <= Math.min(...one);
+        }));
+        const overlaps = boxes.flatMap(([name], place) => boxes.slice(place + 1).map(([other], after) => [other, place + 1 + after])
+            .filter(([_, other]) => !apart(shapes[place], shapes[other]))
             .map(([other]) => name + ' | ' + other));
         const outside = boxes.filter(([_, box]) => box.left < -1 || box.right > document.documentElement.clientWidth + 1).map(([name]) => name);
         return {
@@ -59,6 +75,38 @@ DRAWN = """() => [...document.querySelectorAll('figure')].flatMap(figure => {
         };
     });
 })"""
+# Of each chart: the range of all numbers that it draws along its axis of values, whether it is over time, and its rows of marks.
+VALUES = """() => [...document.querySelectorAll('.plotly-graph-div')].map(div => {
+    const numbers = list => [...(list || [])].flat().filter(value => typeof value === 'number' && isFinite(value));
+    const marks = div.data.filter(trace => trace.yaxis === 'y2');
+    // Along whichever axis is of numbers; of a box its ends, of a map of colours its colours.
+    const values = div.data.filter(trace => trace.yaxis !== 'y2').flatMap(trace => {
+        if (trace.type === 'heatmap') return numbers(trace.z);
+        if (trace.type === 'box') return [...numbers(trace.lowerfence), ...numbers(trace.upperfence)];
+        if (trace.orientation === 'h') return numbers(trace.x);
+        const [x, y] = [numbers(trace.x), numbers(trace.y)];
+        const up = [...numbers(trace.error_x && trace.error_x.array), ...numbers(trace.error_x && trace.error_x.arrayminus)];
+        return y.length ? y : [...x, ...up.flatMap(length => [x[0] + length])];
+    });
+    const title = axis => (axis && axis.title && (axis.title.text || axis.title)) || '';
+    const across = title(div.layout.xaxis);
+    const shown = mark => { const box = mark.getBoundingClientRect(); return box.width + box.height > 0; };
+    return {
+        id: div.id, flat: values.length > 0 && Math.max(...values) === Math.min(...values), values: values.length,
+        over_time: across === 'time, s' || across === 'control steps' && div.id.startsWith('completion-0'),
+        marks: marks.filter(trace => trace.mode === 'markers').reduce((sum, trace) => sum + trace.x.length, 0),
+        worded: marks.filter(trace => trace.mode === 'markers').every(trace => trace.hovertext.every(words => words.length > 4)),
+        drawn: [...div.querySelectorAll('.subplot.xy2 .scatterlayer .point, .xy2 .scatterlayer .point')].filter(shown).length,
+    };
+})"""
+# Of a picture, which words overlap; what is written twice, for its halo, counts once.
+WORDS = """() => {
+    const words = [...document.querySelectorAll('svg text')].filter(text => !text.getAttribute('stroke'));
+    const boxes = words.map(text => [text.textContent, text.getBoundingClientRect()]);
+    return boxes.flatMap(([name, a], place) => boxes.slice(place + 1)
+        .filter(([_, b]) => a.left < b.right - 0.5 && b.left < a.right - 0.5 && a.top < b.bottom - 2 && b.top < a.bottom - 2)
+        .map(([other]) => name + ' | ' + other));
+}"""
 SETTINGS = "() => document.querySelectorAll('#found table tbody tr').length"
 OVERFLOW = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
@@ -121,6 +169,38 @@ def counted(page: Page) -> list[str]:
     return found
 
 
+def told(page: Page) -> list[str]:
+    """Charts that say nothing, and charts over time that leave out what happened."""
+    found = []
+    charts = page.evaluate(VALUES)
+    for chart in charts:
+        # A map of robots shows places, of whatever value.
+        if chart["flat"] and not chart["id"].startswith("map-"):
+            found.append(f"{chart['id']}: a chart of one value")
+        if chart["marks"] and not chart["worded"]:
+            found.append(f"{chart['id']}: marks without words")
+        if chart["drawn"] < chart["marks"]:
+            found.append(f"{chart['id']}: {chart['drawn']} of {chart['marks']} marks drawn")
+    over_time = [chart for chart in charts if chart["over_time"]]
+    marked = [chart for chart in over_time if chart["marks"]]
+    if marked and len(marked) < len(over_time):
+        found.append(f"not marked: {[chart['id'] for chart in over_time if not chart['marks']]}")
+    if page.locator("#suspicions").count() and not marked:
+        found.append("suspicions, and no chart over time has a mark")
+    return found
+
+
+def pictures_of(context: BrowserContext, folder: pathlib.Path) -> list[str]:
+    """What is wrong with the pictures in a folder and in the folders of settings."""
+    found = []
+    page = context.new_page()
+    for file in sorted([*folder.glob("*.svg"), *folder.glob("*/*.svg")]):
+        page.set_content(file.read_text(encoding="utf-8"))
+        found += [f"{file.parent.name}/{file.name}: words overlap: {pair}" for pair in page.evaluate(WORDS)[:3]]
+    page.close()
+    return found
+
+
 def hover(page: Page) -> list[str]:
     """A chart of rows must answer to the pointer: the headers of a scenario's page, a figure by setting of a study's."""
     chart = page.locator("#headers-0, [id^=by-setting].plotly-graph-div").first
@@ -149,6 +229,7 @@ def open_page(context: BrowserContext, path: pathlib.Path, pictures: pathlib.Pat
     page.wait_for_timeout(500)
     found += faults(page)
     found += counted(page)
+    found += told(page)
     name = f"{path.parent.name}-{device}"
     page.screenshot(path=pictures / f"{name}.png", full_page=True)
     if device == "desktop":
@@ -178,6 +259,8 @@ def main() -> int:
                 )
                 for page in pages:
                     found += open_page(context, page, pictures, device)
+                    if device == "desktop":
+                        found += pictures_of(context, page.parent)
                 context.close()
     for fault in found:
         print(fault, file=sys.stderr)

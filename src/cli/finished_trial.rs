@@ -6,7 +6,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::failure::Failure;
 use super::interrupt;
-use crate::export::{Contents, Folder, FolderError, Manifest, TrialEntry};
+use crate::export::{Contents, Folder, FolderError, Manifest, StudyFolder, TrialEntry};
 use crate::kind::TrialError;
 use crate::metrics::TrialRecord;
 use crate::scenario::{Scenario, parse, to_ron};
@@ -108,6 +108,9 @@ fn results(dir: &Path) -> Result<Manifest, Failure> {
     if !dir.exists() {
         return refuse(format!("there is no folder {shown}"));
     }
+    if StudyFolder::is_at(dir) {
+        return refuse(of_a_setting(dir)?);
+    }
     let folder = Folder::new(dir.to_owned());
     match folder.contents() {
         Ok(Contents::Results(manifest)) if manifest.finished => {
@@ -122,6 +125,19 @@ fn results(dir: &Path) -> Result<Manifest, Failure> {
         }
         Err(error) => Err(error.into()),
     }
+}
+
+/// What is said to who names the folder of a study, whose trials are those of its settings.
+fn of_a_setting(dir: &Path) -> Result<String, Failure> {
+    let manifest = StudyFolder::new(dir.to_owned()).contents()?;
+    let settings = manifest.map(|manifest| manifest.settings).unwrap_or_default();
+    let folder = settings.first().map_or_else(|| dir.to_owned(), |first| dir.join(first));
+    Ok(format!(
+        "{} holds a study, and a trial is one of a setting: give the folder of a setting, such as {}\nIts settings are {}.",
+        shown(dir),
+        shown(&folder),
+        settings.join(", ")
+    ))
 }
 
 /// The scenario that `manifest` holds.

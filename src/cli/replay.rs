@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::finished_trial::FinishedTrial;
 use super::page_file;
 use crate::experiment::{reach, watch_trial};
-use crate::export::REPLAY;
+use crate::export::replay_page;
 use crate::report::{Film, ReplayInput, replay};
 use crate::text::shown;
 
@@ -51,10 +51,7 @@ pub fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
         folder: &shown(&finished.dir),
     };
     let page = replay(&input, film);
-    let name = match arguments.trial {
-        0 => REPLAY.to_owned(),
-        other => format!("replay-{other}.html"),
-    };
+    let name = replay_page(arguments.trial);
     let file = arguments.out.clone().unwrap_or_else(|| finished.dir.join(&name));
     page_file::write(&file, &page, &name, "shows the trial").map(|_| ())
 }

@@ -8,8 +8,9 @@ use super::failure::Failure;
 use super::output::say;
 use super::page_file::{self, Place};
 use super::shown::{Finished, Format, print_comparison};
-use crate::export::{Folder, Manifest, PAGE, REPLAY, Results, StudyFolder, WriteError};
-use crate::report::{PageInput, page, study_page};
+use crate::export::{Folder, Manifest, PAGE, Results, StudyFolder, StudyManifest, WriteError};
+use crate::metrics::comparison::Comparison;
+use crate::report::{PageInput, SettingTrials, Watch, page, study_page};
 use crate::text::shown;
 
 /// What `desim report --help` says.
@@ -91,7 +92,8 @@ fn report_study(folder: &StudyFolder, arguments: &ReportArguments) -> Result<(),
         .filter(|manifest| manifest.finished)
         .ok_or_else(unfinished)?;
     let comparison = folder.finished(&manifest)?;
-    let html = study_page(&comparison, &manifest.made_by());
+    let trials = trials(folder, &manifest, &comparison, arguments.out.is_none())?;
+    let html = study_page(&comparison, &manifest.made_by(), &trials);
     let place = match &arguments.out {
         Some(file) => page_file::write(file, &html, PAGE, "has the charts")?,
         None => kept(
@@ -103,6 +105,35 @@ fn report_study(folder: &StudyFolder, arguments: &ReportArguments) -> Result<(),
         return Ok(());
     }
     print_comparison(&comparison, folder, arguments.format)
+}
+
+/// The trials of each setting; with links to the pages that show them where the page of charts stays `beside` them.
+fn trials(
+    folder: &StudyFolder,
+    manifest: &StudyManifest,
+    comparison: &Comparison,
+    beside: bool,
+) -> Result<Vec<SettingTrials>, Failure> {
+    let mut told = folder.told(manifest, &comparison.primary)?;
+    let of = |name: &String| {
+        let setting = folder.setting(name);
+        SettingTrials {
+            setting: name.clone(),
+            told: told.remove(name).unwrap_or_default(),
+            watch: watch(&setting, &format!("{name}/"), beside),
+        }
+    };
+    Ok(manifest.settings.iter().map(of).collect())
+}
+
+/// Where the trials in a folder can be watched, the links to their pages beginning with `path`.
+fn watch(folder: &Folder, path: &str, beside: bool) -> Watch {
+    let replays = if beside { folder.replays() } else { Vec::new() };
+    let link = |(trial, name): (u32, String)| (trial, format!("{path}{name}"));
+    Watch {
+        folder: shown(folder.path()),
+        replays: replays.into_iter().map(link).collect(),
+    }
 }
 
 /// Says where the page is, or why it is not in `dir`: results may lie where nobody writes.
@@ -130,7 +161,9 @@ fn question(results: &Results) -> Option<String> {
 /// to standard output, where no report may follow it.
 fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Option<Vec<String>>, Failure> {
     let (dir, manifest) = &results.sources[0];
-    let replay = arguments.out.is_none() && dir.join(REPLAY).is_file();
+    let folder = Folder::new(dir.clone());
+    // Trials of several folders have the same numbers.
+    let watch = (results.sources.len() == 1).then(|| watch(&folder, "", arguments.out.is_none()));
     let html = || {
         page(&PageInput {
             question: question(results).as_deref(),
@@ -140,7 +173,7 @@ fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Option<V
             records: &results.records,
             summary: &results.summary,
             made_by: &manifest.made_by(),
-            replay: replay.then_some(REPLAY),
+            watch: watch.clone(),
         })
     };
     let names = |manifest: &Manifest| manifest.files.keys().cloned().collect();
@@ -150,7 +183,7 @@ fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Option<V
             Ok((page_file::write(file, &html(), PAGE, "has the charts")? == Place::File).then_some(files))
         }
         (None, 1) => {
-            let kept_page = Folder::new(dir.clone()).keep_page(manifest, &html());
+            let kept_page = folder.keep_page(manifest, &html());
             let files = names(kept_page.as_ref().unwrap_or(manifest));
             kept(dir, kept_page)?;
             Ok(Some(files))

@@ -8,6 +8,27 @@ pub const SUMMARY: &str = "summary.json";
 pub const PAGE: &str = "report.html";
 /// The page on which trial 0 is watched.
 pub const REPLAY: &str = "replay.html";
+/// The page on which trial number `trial` is watched.
+#[must_use]
+pub fn replay_page(trial: u32) -> String {
+    match trial {
+        0 => REPLAY.to_owned(),
+        other => format!("replay-{other}.html"),
+    }
+}
+
+/// The trial that a page of this name shows, if it is called as such pages are.
+#[must_use]
+pub fn shows(name: &str) -> Option<u32> {
+    let number = name.strip_prefix("replay")?.strip_suffix(".html")?;
+    let trial = match number {
+        "" => 0,
+        _ => number.strip_prefix('-')?.parse().ok()?,
+    };
+    // Not `replay-007.html`, nor `replay-0.html`.
+    (replay_page(trial) == name).then_some(trial)
+}
+
 /// Pictures of a trial, before its number.
 pub const PICTURES: [&str; 2] = ["final", "trajectories"];
 /// A trace of trial 0: a folder of tables, or, with an ending, a file.
@@ -33,4 +54,26 @@ pub fn is_trace(name: &str) -> bool {
         .map(|number| number.strip_prefix('-').unwrap_or(number));
     let is_numbered = number.is_some_and(|number| number.bytes().all(|digit| digit.is_ascii_digit()));
     is_numbered && ending.is_none_or(|ending| TRACE_ENDINGS.contains(&ending))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pages_of_trials_are_known_by_their_names() {
+        for trial in [0, 1, 7, 120] {
+            assert_eq!(shows(&replay_page(trial)), Some(trial));
+        }
+        for name in [
+            "report.html",
+            "replay-007.html",
+            "replay-0.html",
+            "replay-.html",
+            "replay-1.htm",
+            "replay1.html",
+        ] {
+            assert_eq!(shows(name), None, "{name}");
+        }
+    }
 }

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::Tables;
-use super::files::{MANIFEST, PAGE, PICTURES, REPLAY, SUMMARY, TRACE_TABLES, is_trace};
+use super::files::{MANIFEST, PAGE, PICTURES, REPLAY, SUMMARY, TRACE_TABLES, is_trace, shows};
 use super::held::{FileEntry, document, held, measure, sealed, unseal};
 use super::manifest::Manifest;
 use super::place::{FolderError, Place, WriteError, failed, gone};
@@ -42,6 +42,14 @@ impl Folder {
     #[must_use]
     pub fn path(&self) -> &Path {
         self.place.path()
+    }
+
+    /// The trials for which there is a page to watch them on, each with the page's name.
+    #[must_use]
+    pub fn replays(&self) -> Vec<(u32, String)> {
+        let names = self.place.names().unwrap_or_default();
+        let pages = names.into_iter().filter(|name| self.path().join(name).is_file());
+        pages.filter_map(|name| Some((shows(&name)?, name))).collect()
     }
 
     /// Where finished trials wait for the others, and files until they are whole.

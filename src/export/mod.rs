@@ -26,7 +26,7 @@ mod tables;
 pub mod trace;
 mod write;
 
-pub use files::{PAGE, REPLAY};
+pub use files::{PAGE, REPLAY, replay_page};
 pub use folder::{Contents, Folder};
 pub use held::{FileEntry, sealed};
 pub use manifest::{Difference, Manifest, TrialEntry, program};

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 
 use crate::metrics::TrialRecord;
+use crate::metrics::figures::Told;
 
 /// What the tables call topics and roles, in the order of their numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,4 +27,12 @@ pub const OPTIONAL: [&str; 0] = [];
 /// Always.
 pub fn records(_: &mut BTreeMap<String, File>, _: &NameLists) -> Result<Vec<TrialRecord>, (&'static str, String)> {
     Err((READ[0], "this desim was built without Parquet".to_owned()))
+}
+
+/// Nothing.
+///
+/// # Errors
+/// Always.
+pub fn told(_: File, _: &str) -> Result<BTreeMap<String, Vec<Told>>, String> {
+    Err("this desim was built without Parquet".to_owned())
 }

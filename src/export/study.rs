@@ -14,7 +14,9 @@ use super::held::{FileEntry, document, held, sealed, unseal};
 use super::manifest::{Difference, Manifest, compare, made_by, other_program};
 use super::picture;
 use super::place::{FolderError, Place, failed, json};
+use super::read;
 use crate::metrics::comparison::{Comparison, Trials};
+use crate::metrics::figures::Told;
 
 const STUDY: &str = "study.json";
 /// What compares the settings.
@@ -187,6 +189,21 @@ impl StudyFolder {
         }
         let mut files = held(self.path(), &manifest.comparing(), &[COMPARISON])?;
         document(self.path(), COMPARISON, &mut files, &manifest.version).map(Some)
+    }
+
+    /// What the trials of each setting that have a value tell of the figure with the key `figure`, by the settings' names; nothing where
+    /// the study was run without tables.
+    ///
+    /// # Errors
+    /// The file that is not as it was written.
+    pub fn told(&self, manifest: &StudyManifest, figure: &str) -> Result<BTreeMap<String, Vec<Told>>, FolderError> {
+        if !manifest.files.contains_key(TABLE) {
+            return Ok(BTreeMap::new());
+        }
+        let mut files = held(self.path(), &manifest.comparing(), &[TABLE])?;
+        let told = files.remove(TABLE).map(|file| read::told(file, figure)).transpose();
+        let version = |wrong: String| FolderError::version(&self.path().join(TABLE), &wrong, &manifest.version);
+        Ok(told.map_err(version)?.unwrap_or_default())
     }
 
     /// The comparison of a finished study, all of whose files are those that `manifest` describes, the results of every setting too;

@@ -10,6 +10,7 @@
 #[cfg(test)]
 mod coverage;
 mod difference;
+mod epidemic;
 mod estimator;
 mod family;
 mod interval;
@@ -22,6 +23,7 @@ mod terms;
 mod times;
 
 pub use difference::difference;
+pub use epidemic::SimpleEpidemic;
 pub use estimator::{Estimator, mean, proportion};
 pub use family::{POWER, fewest_trials, holm, testable, trials_needed};
 pub use median::median;

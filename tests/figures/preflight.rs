@@ -336,3 +336,49 @@ fn of_a_detector_that_is_none_nothing_is_predicted_and_the_backbone_does_not_run
     let report = parse("bare.ron", backbone, &[]).unwrap_err().to_string();
     assert!(report.contains("the backbone needs a failure detector"), "{report}");
 }
+
+/// 80 robots of which each tells one other a second, a fifth of what they say lost: 2 · 79 · H(79) / (80 · 0.8) = 12.23 s, as
+/// the scenario that ships has it.
+#[test]
+fn a_rumour_is_a_simple_epidemic_where_nothing_about_it_is_otherwise() {
+    let text = |protocol: &str, more: &str| {
+        format!(
+            "swarm: (robots: 80, deploy: Cluster(radius: 0.95)), protocol: Rumor({protocol}), \
+             gossip: (relay: (interval: 1.0, fan_out: Peers(1))), {more}"
+        )
+    };
+    let still = "radio: (loss: Bernoulli(0.2), latency: Constant(0.0))";
+    let time = "spread.time_to_all_s";
+    let harmonic: f64 = (1..80).map(|n| 1.0 / f64::from(n)).sum();
+    let mean = |rate: f64| 2.0 * 79.0 * harmonic / (80.0 * rate);
+    assert!((mean(0.8) - 12.23).abs() < 0.005);
+    let at_once = format!("control: (wake: OnReception), {still}");
+    for (mode, more, rate) in [
+        ("Push", still, 0.8),
+        ("Pull", at_once.as_str(), 0.64),
+        ("PushPull", at_once.as_str(), 0.8 + 0.64),
+    ] {
+        let expected = preflight(&text(&format!("mode: {mode}, rounds: Poisson"), more));
+        assert_value(&expected, time, mean(rate));
+    }
+    let poisson = "mode: Push, rounds: Poisson";
+    for (protocol, more) in [
+        ("mode: Push", still),
+        ("mode: Pull, rounds: Poisson", still),
+        ("mode: Push, rounds: Poisson, sources: Random(2)", still),
+        (poisson, "radio: (latency: Constant(0.1))"),
+        (poisson, "radio: (range: 1.8, latency: Constant(0.0))"),
+        (
+            poisson,
+            "wander: RandomWaypoint(speed: 0.02), radio: (latency: Constant(0.0))",
+        ),
+        (
+            poisson,
+            "radio: (latency: Constant(0.0)), faults: [Crash(robots: [3], at: 1.0)]",
+        ),
+    ] {
+        let expected = preflight(&text(protocol, more));
+        assert!(expected.get(time).is_none(), "{protocol}, {more}");
+        assert!(expected.not_predicted.iter().any(|refused| refused.name == time));
+    }
+}

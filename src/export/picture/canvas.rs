@@ -2,6 +2,7 @@
 
 use svg::{Document, Node};
 
+use super::labels::{Rect, Taken, room};
 use super::shapes::{circle, element, line, marker, path, polyline, text};
 use super::style::{AXIS, Marker, Stroke, TEXT};
 use crate::geometry::Vec2;
@@ -15,6 +16,10 @@ const LEGEND: f64 = 214.0;
 const LEGEND_LINE: f64 = 23.0;
 /// Height of the numbers beside marks, pixels.
 const LABEL: f64 = 8.5;
+/// Room that a robot's mark takes, pixels.
+const MARK: f64 = 10.0;
+/// Furthest that a number stands from its mark, pixels: further away nobody would know whose it is.
+const FURTHEST: f64 = 12.0;
 const FONT: &str = "Helvetica, Arial, sans-serif";
 
 /// A sheet being drawn. Places are in metres from the arena's centre, y upwards; sizes of marks and text in pixels.
@@ -81,15 +86,40 @@ impl Canvas {
         self.put(marker(at, look));
     }
 
-    /// Small text to the upper right of a place, readable over lines.
-    pub fn label(&mut self, at: Vec2, words: &str) {
-        let at = self.pixel(at) + Vec2::new(5.5, -5.0);
-        let mut halo = text(at, LABEL, "start", "#ffffff", words);
+    /// Small numbers beside marks at these places, counted from 0: none over another, nor over a mark, nor over one of `others`, whose
+    /// sizes are pixels. Answers how many found no room.
+    pub fn numbers(&mut self, marks: &[Vec2], others: &[(Vec2, f64)]) -> usize {
+        let marks: Vec<Vec2> = marks.iter().map(|&at| self.pixel(at)).collect();
+        let others: Vec<(Vec2, f64)> = others.iter().map(|&(at, size)| (self.pixel(at), size)).collect();
+        let size = Vec2::new(LEFT + self.size.x * self.scale, TOP + self.size.y * self.scale);
+        let sheet = Rect {
+            from: Vec2::new(LEFT, TOP),
+            to: size,
+        };
+        let placed = placed(sheet, &marks, &others);
+        for (number, label) in placed.iter().enumerate() {
+            if let Some(label) = label {
+                self.label(*label, &number.to_string());
+            }
+        }
+        placed.iter().filter(|label| label.is_none()).count()
+    }
+
+    /// Small text in a rectangle, readable over lines.
+    fn label(&mut self, place: Rect, words: &str) {
+        let at = Vec2::new(f64::midpoint(place.from.x, place.to.x), place.to.y - 0.25 * LABEL);
+        let mut halo = text(at, LABEL, "middle", "#ffffff", words);
         halo.assign("stroke", "#ffffff");
         halo.assign("stroke-width", 2.4);
         halo.assign("stroke-opacity", 0.8);
         self.put(halo);
-        self.put(text(at, LABEL, "start", TEXT, words));
+        self.put(text(at, LABEL, "middle", TEXT, words));
+    }
+
+    /// A line of the legend without a mark.
+    pub fn legend_words(&mut self, text: &str) {
+        let at = self.legend_place();
+        self.legend_text(at, text);
     }
 
     /// A line of the legend with a mark.
@@ -203,6 +233,18 @@ impl Canvas {
     }
 }
 
+/// Where the numbers of marks stand, those that find room.
+fn placed(sheet: Rect, marks: &[Vec2], others: &[(Vec2, f64)]) -> Vec<Option<Rect>> {
+    let mut taken = Taken::new(sheet, marks, MARK);
+    for &(at, size) in others {
+        taken.take(Rect::about(at, Vec2::new(size, size)));
+    }
+    let numbered = marks.iter().enumerate();
+    numbered
+        .map(|(number, &mark)| taken.place(mark, room(&number.to_string(), LABEL), FURTHEST))
+        .collect()
+}
+
 /// Round distances for ticks: four to ten of them along `length`.
 fn tick_step(length: f64) -> f64 {
     let power = 10_f64.powf((length / 10.0).log10().floor());
@@ -224,4 +266,41 @@ fn ticks(half: f64) -> impl Iterator<Item = f64> {
 fn tick_label(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     format!("{rounded}").replace('-', "\u{2212}")
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn numbers_of_robots_anywhere_cover_neither_each_other_nor_a_mark(
+            marks in prop::collection::vec((0.0..640.0_f64, 0.0..640.0_f64), 1..200),
+            crowded in 0.02..1.0_f64,
+        ) {
+            let sheet = Rect { from: Vec2::new(LEFT, TOP), to: Vec2::new(LEFT + 640.0, TOP + 640.0) };
+            let marks: Vec<Vec2> = marks.iter().map(|(x, y)| sheet.from + crowded * Vec2::new(*x, *y)).collect();
+            let target = Rect::about(sheet.from + Vec2::new(100.0, 100.0), Vec2::new(22.0, 22.0));
+            let labels = placed(sheet, &marks, &[(sheet.from + Vec2::new(100.0, 100.0), 22.0)]);
+            prop_assert_eq!(labels.len(), marks.len());
+            let found: Vec<Rect> = labels.iter().flatten().copied().collect();
+            for (place, label) in found.iter().enumerate() {
+                prop_assert!(!label.overlaps(&target));
+                for other in &found[place + 1..] {
+                    prop_assert!(!label.overlaps(other), "{:?} and {:?}", label, other);
+                }
+                for &mark in &marks {
+                    prop_assert!(!label.overlaps(&Rect::about(mark, Vec2::new(MARK, MARK))));
+                }
+            }
+            // Whoever stands alone has a number.
+            let alone = |at: Vec2| marks.iter().filter(|other| (at - **other).norm() < 60.0).count() == 1;
+            for (&mark, label) in marks.iter().zip(&labels) {
+                let inside = (mark - sheet.from).min() > 30.0 && (mark - sheet.from - Vec2::new(100.0, 100.0)).norm() > 60.0;
+                prop_assert!(label.is_some() || !inside || !alone(mark));
+            }
+        }
+    }
 }

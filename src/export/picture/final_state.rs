@@ -36,12 +36,18 @@ pub fn draw(scene: &Scene, record: &TrialRecord, reach: &Reach) -> Document {
     for robot in &failed {
         canvas.mark(robots[robot.index()].pose.position, FAILED);
     }
-    if robots.len() <= MOST_LABELS {
-        for (number, robot) in robots.iter().enumerate() {
-            canvas.label(robot.pose.position, &number.to_string());
-        }
-    }
+    let crowded = if robots.len() <= MOST_LABELS {
+        let places: Vec<Vec2> = robots.iter().map(|robot| robot.pose.position).collect();
+        let others: Vec<(Vec2, f64)> = scene.targets.iter().map(|&at| (at, 2.0 * TARGET.size)).collect();
+        canvas.numbers(&places, &others)
+    } else {
+        robots.len()
+    };
     legend(&mut canvas, scene, reach, robots, &targets, failed.len());
+    if crowded > 0 {
+        let numbers = if crowded == 1 { "number" } else { "numbers" };
+        canvas.legend_words(&format!("no room for {crowded} {numbers}"));
+    }
     canvas.finish()
 }
 

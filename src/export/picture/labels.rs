@@ -56,6 +56,11 @@ impl Taken {
         }
     }
 
+    /// Takes a part of the sheet for something else.
+    pub fn take(&mut self, other: Rect) {
+        self.taken.push(other);
+    }
+
     /// Takes the free rectangle of `size` that is nearest to the mark `at`, if there is one no further away than `most` pixels.
     pub fn place(&mut self, at: Vec2, size: Vec2, most: f64) -> Option<Rect> {
         let mut distance = 7.0;

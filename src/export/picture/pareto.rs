@@ -151,8 +151,9 @@ impl Plane<'_> {
         for point in points {
             self.bars(&mut document, point);
         }
-        for (label, &at) in labels.placed.iter().zip(&marks) {
-            let nearest = label.1.nearest(at);
+        for label in &labels.placed {
+            let at = marks[label.mark];
+            let nearest = label.room.nearest(at);
             if (nearest - at).norm() > NEAR {
                 document.append(line(at, nearest, stroke(AXIS, 0.7, 0.7)));
             }
@@ -169,9 +170,9 @@ impl Plane<'_> {
                 },
             ));
         }
-        for (label, place) in &labels.placed {
-            let baseline = Vec2::new(f64::midpoint(place.from.x, place.to.x), place.to.y - 0.25 * LETTERS);
-            document.append(text(baseline, LETTERS, "middle", TEXT, label));
+        for Label { words, room, .. } in &labels.placed {
+            let baseline = Vec2::new(f64::midpoint(room.from.x, room.to.x), room.to.y - 0.25 * LETTERS);
+            document.append(text(baseline, LETTERS, "middle", TEXT, words));
         }
         for (row, entry) in labels.list.iter().enumerate() {
             let at = Vec2::new(LEFT + ACROSS + 30.0, TOP + LINE * (row as f64 + 1.0));
@@ -243,10 +244,18 @@ impl Plane<'_> {
     }
 }
 
+/// What stands beside a point.
+struct Label {
+    /// The point's place among all.
+    mark: usize,
+    words: String,
+    room: Rect,
+}
+
 /// What stands beside the points, and where, so that nothing overlaps.
 struct Labels {
-    /// For each point.
-    placed: Vec<(String, Rect)>,
+    /// For each point, but for those of which not even a number finds room.
+    placed: Vec<Label>,
     /// What the numbers mean, if the labels are numbers.
     list: Vec<String>,
 }
@@ -258,28 +267,37 @@ impl Labels {
             from: Vec2::new(LEFT + 2.0, TOP - 10.0),
             to: Vec2::new(LEFT + ACROSS + right, TOP + UP - 2.0),
         };
-        let place = |labels: &[String], right: f64, most: f64| -> Option<Vec<(String, Rect)>> {
+        let place = |labels: &[String], right: f64, most: f64| -> Vec<Label> {
             let mut taken = Taken::new(sheet(right), marks, MARK);
-            let placed = labels
-                .iter()
-                .zip(marks)
-                .map(|(label, &mark)| Some((label.clone(), taken.place(mark, room(label, LETTERS), most)?)));
+            let placed = labels.iter().zip(marks).enumerate().filter_map(|(mark, (words, &at))| {
+                Some(Label {
+                    mark,
+                    words: words.clone(),
+                    room: taken.place(at, room(words, LETTERS), most)?,
+                })
+            });
             placed.collect()
         };
-        if let Some(placed) = place(names, right - 4.0, FURTHEST) {
+        let placed = place(names, right - 4.0, FURTHEST);
+        if placed.len() == names.len() {
             return Self {
                 placed,
                 list: Vec::new(),
             };
         }
         let numbers: Vec<String> = (1..=names.len()).map(|number| number.to_string()).collect();
-        let list = names
+        let mut list: Vec<String> = names
             .iter()
             .zip(&numbers)
             .map(|(name, number)| format!("{number}  {name}"))
             .collect();
         // More than find a place on the whole sheet are in the list alone.
-        let placed = place(&numbers, 20.0, ACROSS + UP).unwrap_or_default();
+        let placed = place(&numbers, 20.0, ACROSS + UP);
+        match names.len() - placed.len() {
+            0 => {}
+            1 => list.push("no room for 1 number".to_owned()),
+            left_out => list.push(format!("no room for {left_out} numbers")),
+        }
         Self { placed, list }
     }
 }
@@ -294,17 +312,45 @@ fn stroke(colour: &'static str, width: f64, opacity: f64) -> Stroke {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
-    /// Labels of so many settings at these places, each of which must have one that overlaps neither marks nor others.
+    proptest! {
+        #[test]
+        fn labels_of_settings_anywhere_overlap_nothing(
+            marks in prop::collection::vec((0.0..1.0_f64, 0.0..1.0_f64), 1..50),
+            crowded in 0.0..1.0_f64,
+            letters in 1..60_usize,
+        ) {
+            let marks: Vec<Vec2> = marks
+                .iter()
+                .map(|(x, y)| Vec2::new(LEFT + crowded * x * ACROSS, TOP + UP - crowded * y * UP))
+                .collect();
+            let names: Vec<String> = (0..marks.len()).map(|place| format!("{place} {}", "m".repeat(letters))).collect();
+            let labels = overlap_nothing(&marks, &names);
+            // Of those that lie on top of each other in a corner some have no number: then the list says so.
+            prop_assert!(2 * labels.placed.len() > marks.len());
+            let left_out = labels.placed.len() < marks.len();
+            prop_assert_eq!(left_out, labels.list.last().is_some_and(|last| last.starts_with("no room")));
+        }
+    }
+
+    /// Labels of so many settings at these places, each of which must have one.
     fn check(marks: &[Vec2], names: &[String]) -> Labels {
-        let labels = Labels::of(marks, names, RIGHT[0]);
+        let labels = overlap_nothing(marks, names);
         assert_eq!(labels.placed.len(), marks.len());
-        for (place, (name, label)) in labels.placed.iter().enumerate() {
-            let others = labels.placed[place + 1..].iter().map(|(_, other)| *other);
+        labels
+    }
+
+    /// Labels of so many settings at these places, which must overlap neither marks nor each other.
+    fn overlap_nothing(marks: &[Vec2], names: &[String]) -> Labels {
+        let labels = Labels::of(marks, names, RIGHT[0]);
+        for (place, Label { words, room, .. }) in labels.placed.iter().enumerate() {
+            let others = labels.placed[place + 1..].iter().map(|other| other.room);
             let marks = marks.iter().map(|&mark| Rect::about(mark, Vec2::new(MARK, MARK)));
             for other in others.chain(marks) {
-                assert!(!label.overlaps(&other), "{name}: {label:?} and {other:?}");
+                assert!(!room.overlaps(&other), "{words}: {room:?} and {other:?}");
             }
         }
         labels
@@ -343,6 +389,6 @@ mod tests {
             Vec2::new(640.0, 300.0),
         ];
         let labels = check(&marks, &names(3));
-        assert!(labels.list.is_empty() && labels.placed[1].0 == "timeout 1 s, φ-accrual");
+        assert!(labels.list.is_empty() && labels.placed[1].words == "timeout 1 s, φ-accrual");
     }
 }

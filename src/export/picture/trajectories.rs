@@ -18,9 +18,11 @@ const NARROWEST: f64 = 0.7;
 const INK: f64 = 0.12;
 /// Paths fade towards their beginning, in so many steps, from and to these opacities.
 const STEPS: usize = 5;
-const OPACITY: [f64; 2] = [0.15, 0.75];
+const OPACITY: [f64; 2] = [0.2, 0.9];
+/// How far a path that is drawn may be from where its robot was, pixels: what nobody sees.
+const TOLERANCE: f64 = 0.25;
 
-/// Draws paths by the robots' roles at the end, from a ring where they began to their mark where they ended: thinner, the more robots there
+/// Draws paths by the robots' roles at the end, from a pale dot where they began to their mark where they ended: thinner, the more robots there
 /// are, fading towards the beginning, and, where that would still cover the arena, without it.
 pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
     let size = Vec2::new(scene.arena.size.0.get(), scene.arena.size.1.get());
@@ -37,6 +39,11 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
     };
     let mut canvas = Canvas::new(size, &scene.name, &format!("paths of {}{cut}", subtitle(record)));
     obstacles(&mut canvas, &scene.arena.obstacles);
+    // Where they began lies below all: with many robots it is what matters least.
+    if since <= 0.0 {
+        let starts = paths.iter().filter_map(|path| path.first());
+        starts.for_each(|&(_, start)| canvas.mark(start, START));
+    }
     let length = record.simulated.as_secs() - since;
     for step in 0..STEPS {
         let part = |number: usize| since + length * number as f64 / STEPS as f64;
@@ -44,7 +51,7 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
         let opacity = faint + (clear - faint) * step as f64 / (STEPS - 1) as f64;
         for (robot, path) in record.robots.iter().zip(&paths) {
             let colour = style::role(scene.role(robot.role), robot.role.into()).colour;
-            let stretch = stretch(path, part(step), part(step + 1));
+            let stretch = simplified(&stretch(path, part(step), part(step + 1)), TOLERANCE * pixel);
             if stretch.len() > 1 {
                 let opacity = (opacity * 100.0).round() / 100.0;
                 canvas.path(&stretch, Stroke { colour, width, opacity });
@@ -52,10 +59,6 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
         }
     }
     scene.targets.iter().for_each(|&target| canvas.mark(target, TARGET));
-    if since <= 0.0 {
-        let starts = paths.iter().filter_map(|path| path.first());
-        starts.for_each(|&(_, start)| canvas.mark(start, START));
-    }
     for robot in &record.robots {
         let look = style::role(scene.role(robot.role), robot.role.into());
         let size = look.size * crowd.max(0.6);
@@ -66,9 +69,9 @@ pub fn draw(scene: &Scene, record: &TrialRecord) -> Document {
 }
 
 const START: Marker = Marker {
-    shape: Shape::Ring,
-    colour: "#404040",
-    size: 2.0,
+    shape: Shape::Disc,
+    colour: "#b0b0b0",
+    size: 2.4,
 };
 
 fn legend(canvas: &mut Canvas, scene: &Scene, record: &TrialRecord, with_start: bool) {
@@ -153,6 +156,38 @@ fn stretch(path: &Path, from: f64, until: f64) -> Vec<Vec2> {
     inside.iter().map(|(_, place)| *place).collect()
 }
 
+/// The ends of a line and those of its points without which it would be more than `tolerance` off (Ramer, 1972; Douglas and Peucker, 1973).
+fn simplified(line: &[Vec2], tolerance: f64) -> Vec<Vec2> {
+    let mut kept = vec![false; line.len()];
+    let mut parts = vec![(0, line.len().saturating_sub(1))];
+    while let Some((first, last)) = parts.pop() {
+        let Some((&from, &to)) = line.get(first).zip(line.get(last)) else {
+            continue;
+        };
+        kept[first] = true;
+        kept[last] = true;
+        let inner = (first + 1..last).map(|place| (place, off(line[place], from, to)));
+        if let Some((place, off)) = inner.max_by(|a, b| a.1.total_cmp(&b.1))
+            && off > tolerance
+        {
+            parts.extend([(first, place), (place, last)]);
+        }
+    }
+    let points = line.iter().zip(kept);
+    points.filter_map(|(point, kept)| kept.then_some(*point)).collect()
+}
+
+/// How far `at` is from the nearest point between two others.
+fn off(at: Vec2, from: Vec2, to: Vec2) -> f64 {
+    let way = to - from;
+    let along = if way.norm_squared() > 0.0 {
+        ((at - from).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (at - from - way * along).norm()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,6 +210,31 @@ mod tests {
             .map(|path| stretch(path, since, 50.0).len() as f64 - 1.0)
             .sum();
         assert!(drawn <= 1_300.0, "{drawn} m");
+    }
+
+    #[test]
+    fn a_simplified_line_keeps_its_ends_and_corners_and_is_nowhere_off_by_more_than_it_may() {
+        let straight: Vec<Vec2> = walk(1_000).into_iter().map(|(_, at)| at).collect();
+        assert_eq!(simplified(&straight, 0.1), [straight[0], straight[1_000]]);
+        let curve: Vec<Vec2> = (0..2_000)
+            .map(|step| {
+                let turn = f64::from(step) / 100.0;
+                Vec2::new(turn.cos() * turn, turn.sin() * turn)
+            })
+            .collect();
+        let few = simplified(&curve, 0.05);
+        assert!((20..300).contains(&few.len()), "{}", few.len());
+        for point in &curve {
+            let nearest = few
+                .windows(2)
+                .map(|leg| off(*point, leg[0], leg[1]))
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest <= 0.05 + 1e-9, "{nearest}");
+        }
+        // There and back again, and nothing.
+        let back = [0.0, 5.0, 0.0].map(|x| Vec2::new(x, 0.0));
+        assert_eq!(simplified(&back, 0.1), back);
+        assert!(simplified(&[], 0.1).is_empty());
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 mod air;
 mod asked;
+mod comparison;
 mod failures;
 mod fill;
 mod records;
@@ -14,6 +15,7 @@ mod trials;
 use std::collections::BTreeMap;
 use std::fs::File;
 
+pub use comparison::told;
 pub use records::NameLists;
 
 use crate::metrics::TrialRecord;

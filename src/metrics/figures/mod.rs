@@ -11,6 +11,7 @@ mod bandwidth;
 mod catalogue;
 mod connectivity;
 mod detection;
+mod exemplars;
 mod figure;
 mod gossip;
 mod healing;
@@ -20,6 +21,7 @@ mod radio;
 mod registry;
 
 pub use detection::{detection_times, mistake_durations};
+pub use exemplars::{Exemplars, Told};
 pub use figure::{Better, COMPLETION, Figure, Sample, parts, pool};
 pub use registry::{Estimated, Registry};
 

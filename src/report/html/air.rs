@@ -89,16 +89,21 @@ pub fn by_distance(input: &PageInput) -> Option<Figure> {
     let power = |(from, band): &(f64, Band)| Some([middle(*from, band.to_m), band.power()?]);
     let shares: Vec<_> = bands.iter().filter_map(share).collect();
     let powers: Vec<_> = bands.iter().filter_map(power).collect();
-    let mut panels = vec![Panel::new(
-        "Copies received",
-        dotted(
-            chart(distance_axis(), percent_axis("copies received"), HoverMode::Closest),
-            &shares,
-            "%{y:.4g} % at %{x:.3g} m<extra></extra>",
-        ),
-    )];
+    let mut panels = vec![
+        Panel::new(
+            "Copies received",
+            dotted(
+                chart(distance_axis(), percent_axis("copies received"), HoverMode::Closest),
+                &shares,
+                "%{y:.4g} % at %{x:.3g} m<extra></extra>",
+            ),
+        )
+        .unless_one(shares.iter().map(|[_, share]| *share), |share| {
+            format!("{} at every distance.", number::percent(share / 100.0))
+        }),
+    ];
     if !powers.is_empty() {
-        panels.push(Panel::new(
+        let panel = Panel::new(
             "Power",
             dotted(
                 chart(
@@ -109,7 +114,10 @@ pub fn by_distance(input: &PageInput) -> Option<Figure> {
                 &powers,
                 "%{y:.4g} dBm at %{x:.3g} m<extra></extra>",
             ),
-        ));
+        );
+        panels.push(panel.unless_one(powers.iter().map(|[_, power]| *power), |power| {
+            format!("{} dBm at every distance.", number::figure(power))
+        }));
     }
     Some(Figure {
         id: "by-distance".into(),
@@ -183,7 +191,15 @@ pub fn causes(input: &PageInput) -> Option<Figure> {
         panels: vec![if causes.is_empty() {
             Panel::words("", "No copy was lost.")
         } else {
-            Panel::of_rows("", plot, causes.len())
+            let shares = causes.iter().map(|(_, frames)| share(*frames));
+            Panel::of_rows("", plot, causes.len()).unless_one(shares, |share| {
+                let names: Vec<&str> = causes.iter().map(|(cause, _)| cause.as_str()).collect();
+                format!(
+                    "{} to {}.",
+                    number::percent(share / 100.0),
+                    names.join(", and as much to ")
+                )
+            })
         }],
         key: Vec::new(),
         table,

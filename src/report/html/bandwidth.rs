@@ -5,7 +5,7 @@ use plotly::layout::{AxisRange, HoverMode};
 use plotly::{Bar, BoxPlot, Plot};
 
 use super::PageInput;
-use super::chart::{axis, chart, faint, one_value, role_colour, shown, stacked, topic_colour, words};
+use super::chart::{axis, chart, faint, role_colour, shown, stacked, topic_colour, words};
 use super::data::Spread;
 use super::figure::{Figure, Panel};
 use super::names::Names;
@@ -110,10 +110,10 @@ fn spread_figure(id: &'static str, title: &'static str, caption: String, ways: &
     let mut panels = Vec::new();
     for ((direction, heading, _), groups) in WAYS.iter().zip(ways) {
         let ends = groups.iter().flat_map(|group| [group.spread.min, group.spread.max]);
-        panels.push(match one_value(ends) {
-            Some(value) => Panel::words(*heading, format!("{} B/step in each of them.", number::figure(value))),
-            None => Panel::of_rows(*heading, boxes(groups), groups.len()),
-        });
+        let panel = Panel::of_rows(*heading, boxes(groups), groups.len());
+        panels.push(panel.unless_one(ends, |value| {
+            format!("{} B/step in each of them.", number::figure(value))
+        }));
         for group in groups {
             let Spread {
                 n,
@@ -252,11 +252,16 @@ pub fn headers(input: &PageInput) -> Figure {
              frame saves some of that.",
             input.in_trials()
         ),
-        panels: vec![if bars.iter().all(|bar| bar.1 + bar.2 == 0.0) {
-            Panel::words("", "Nothing was sent.")
-        } else {
-            Panel::of_rows("", plot, input.topics.len())
-        }],
+        panels: vec![Panel::of_rows("", plot, input.topics.len()).unless_one(
+            bars.iter().flat_map(|bar| [bar.1, bar.2]),
+            |rate| {
+                if rate == 0.0 {
+                    "Nothing was sent.".to_owned()
+                } else {
+                    format!("{} B/step of messages, and as much of headers.", number::figure(rate))
+                }
+            },
+        )],
         key: Vec::new(),
         table,
     }

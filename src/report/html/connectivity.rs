@@ -2,13 +2,12 @@
 
 use plotly::Plot;
 use plotly::common::LineShape;
-use plotly::layout::HoverMode;
 
 use super::PageInput;
-use super::chart::{DIRECTIONS, Points, axis, band, chart, line, one_value, role_colour};
+use super::chart::{DIRECTIONS, Points, axis, band, line, one_value, role_colour};
 use super::data::{Moment, over_time};
-use super::faults;
 use super::figure::{Figure, Panel};
+use super::marks::Marks;
 use super::table::DataTable;
 use crate::engine::SimTime;
 use crate::metrics::{ConnectivitySample, TrialRecord};
@@ -82,11 +81,12 @@ pub fn graph(input: &PageInput) -> Option<Figure> {
     });
     lambda2.first()?;
     let banded = input.records.len() > 1;
+    let marks = Marks::of(input);
     let mut table = DataTable::new(&HEAD);
     rows(&mut table, "λ₂", &lambda2);
     rows(&mut table, "components", &components);
 
-    let mut first = chart(axis("time, s"), axis("λ₂"), HoverMode::Closest);
+    let mut first = marks.chart(axis("time, s"), axis("λ₂"));
     draw(
         &mut first,
         "median",
@@ -112,7 +112,7 @@ pub fn graph(input: &PageInput) -> Option<Figure> {
     let pieces = components.iter().map(|moment| moment.spread.max).fold(0.0, f64::max);
     let y = axis("components");
     let y = if pieces < 8.0 { y.dtick(1.0) } else { y };
-    let mut second = chart(axis("time, s"), y, HoverMode::Closest);
+    let mut second = marks.chart(axis("time, s"), y);
     draw(
         &mut second,
         "median",
@@ -135,16 +135,14 @@ pub fn graph(input: &PageInput) -> Option<Figure> {
             "%{x:.4g} s: at most %{y:.3g}<extra></extra>",
         ));
     }
-    faults::mark(&mut first, input);
-    faults::mark(&mut second, input);
-    let ends = |moments: &[Moment]| one_value(moments.iter().flat_map(|moment| [moment.spread.min, moment.spread.max]));
-    let panel = |title: &'static str, plot: Plot, always: Option<f64>| match always {
-        Some(value) => Panel::words(title, format!("{} at all times of all trials.", number::figure(value))),
-        None => Panel::new(title, plot),
+    let panel = |title: &'static str, plot: Plot, moments: &[Moment]| {
+        let ends = moments.iter().flat_map(|moment| [moment.spread.min, moment.spread.max]);
+        let always = |value: f64| format!("{} at all times of all trials.", number::figure(value));
+        marks.panel(title, plot).unless_one(ends, always)
     };
     let panels = vec![
-        panel("Algebraic connectivity", first, ends(&lambda2)),
-        panel("Components", second, ends(&components)),
+        panel("Algebraic connectivity", first, &lambda2),
+        panel("Components", second, &components),
     ];
     Some(Figure {
         id: "connectivity".into(),
@@ -153,7 +151,7 @@ pub fn graph(input: &PageInput) -> Option<Figure> {
             "First the algebraic connectivity λ₂ of the graph of live robots within range of each other: 0 where it falls apart, larger the \
              harder it is to cut. Then into how many pieces it falls. {}{}",
             input.band_words(),
-            faults::words(input)
+            marks.words()
         ),
         panels,
         key: Vec::new(),
@@ -166,8 +164,9 @@ pub fn roles(input: &PageInput) -> Option<Figure> {
     if input.roles.len() < 2 {
         return None;
     }
+    let marks = Marks::of(input);
     let mut table = DataTable::new(&HEAD);
-    let mut plot = chart(axis("time, s"), axis("robots"), HoverMode::Closest);
+    let mut plot = marks.chart(axis("time, s"), axis("robots"));
     let mut changes = false;
     for role in 0..input.roles.len() {
         let count = |sample: &ConnectivitySample| sample.roles.get(role).map(|&robots| f64::from(robots));
@@ -191,17 +190,16 @@ pub fn roles(input: &PageInput) -> Option<Figure> {
         );
     }
     table.rows.first()?;
-    faults::mark(&mut plot, input);
     Some(Figure {
         id: "roles".into(),
         title: "Robots in each role over time".into(),
         caption: format!(
             "How many robots are in each role, whether they are well or have failed. {}{}",
             input.band_words(),
-            faults::words(input)
+            marks.words()
         ),
         panels: vec![if changes {
-            Panel::new("", plot)
+            marks.panel("", plot)
         } else {
             Panel::words("", "No robot changes its role in any trial.")
         }],

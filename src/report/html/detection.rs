@@ -57,9 +57,25 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
             input.in_trials(),
             number::count(total)
         ),
-        panels: vec![Panel::of_rows("", plot, Verdict::ALL.len())],
+        panels: vec![match table.rows.len() {
+            1 => Panel::words("", only(&counted)),
+            _ => Panel::of_rows("", plot, Verdict::ALL.len()),
+        }],
         key: Vec::new(),
         table,
+    })
+}
+
+/// What is said of suspicions that are all of one kind.
+fn only(counted: &BTreeMap<(Verdict, Cause), u64>) -> String {
+    let one = counted.iter().next();
+    one.map_or_else(String::new, |((verdict, cause), count)| {
+        format!(
+            "All {} are of one kind: {}, {}.",
+            number::count(*count),
+            said(*verdict),
+            cause.name().replace('_', " ")
+        )
     })
 }
 

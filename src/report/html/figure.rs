@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use maud::{Markup, PreEscaped, html};
 use plotly::Plot;
 
-use super::chart::TOOLS;
+use super::chart::{TOOLS, one_value};
 use super::table::DataTable;
 
 /// A figure.
@@ -62,6 +62,14 @@ impl Panel {
         }
     }
 
+    /// The same, unless `values`, all that it shows, are one: no chart is needed to see that, only what `alike` says of it.
+    pub fn unless_one(self, values: impl IntoIterator<Item = f64>, alike: impl FnOnce(f64) -> String) -> Self {
+        match one_value(values) {
+            Some(value) => Self::words(self.title, alike(value)),
+            None => self,
+        }
+    }
+
     /// A sentence instead of a chart.
     pub fn words(title: impl Into<Cow<'static, str>>, words: impl Into<String>) -> Self {
         Self {
@@ -106,6 +114,33 @@ impl Figure {
                 }
                 figcaption { (self.caption) }
                 (self.table.markup(&format!("{scenario}-{}.csv", self.id)))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chart_of_one_value_is_a_sentence_and_any_other_a_chart() {
+        let panel = |values: &[f64]| {
+            Panel::new("Sent", Plot::new()).unless_one(values.iter().copied(), |value| format!("{value} at all times."))
+        };
+        for (values, words) in [
+            (&[3.0, 3.0, 3.0][..], Some("3 at all times.")),
+            (&[0.1 + 0.2, 0.3], Some("0.30000000000000004 at all times.")),
+            (&[3.0, 3.1], None),
+            (&[], None),
+        ] {
+            let panel = panel(values);
+            assert_eq!(panel.title, "Sent");
+            match (panel.content, words) {
+                (Content::Words(said), Some(words)) => assert_eq!(said, words),
+                (Content::Chart(..), None) => {}
+                (Content::Chart(..), Some(words)) => panic!("a chart, and not: {words}"),
+                (Content::Words(said), None) => panic!("no chart of {values:?}, but: {said}"),
             }
         }
     }

@@ -7,6 +7,7 @@ use plotly::layout::{Axis, AxisRange, HoverMode, RangeMode};
 use super::PageInput;
 use super::chart::{Points, axis, band, chart, line, percent_axis, shown, topic_colour};
 use super::figure::{Figure, HEIGHT, Panel};
+use super::marks::Marks;
 use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::comparison::{Comparison, Setting, Survival};
@@ -55,6 +56,8 @@ pub fn completion(input: &PageInput) -> Option<Figure> {
         },
         why_missed(input)
     );
+    let marks = Marks::of(input).in_steps(input.scenario.control.period.get());
+    let caption = caption + marks.words();
     let axis = "control steps";
     Some(curve(
         "completion",
@@ -63,6 +66,7 @@ pub fn completion(input: &PageInput) -> Option<Figure> {
         &observations,
         axis,
         "missions complete",
+        &marks,
     ))
 }
 
@@ -114,6 +118,8 @@ pub fn healing(input: &PageInput) -> Option<Figure> {
         &observations,
         "time since the failure, s",
         "failures mended",
+        // Failures are where this time begins.
+        &Marks::default(),
     ))
 }
 
@@ -184,7 +190,14 @@ pub fn by_setting(comparison: &Comparison) -> Option<Figure> {
             }
         ),
         // On a telephone the legend has a line for each name.
-        panels: vec![Panel::of_height("", plot, HEIGHT + 20 * curves.len().min(40) as u32)],
+        panels: vec![
+            Panel::of_height("", plot, HEIGHT + 20 * curves.len().min(40) as u32).unless_one(
+                curves
+                    .iter()
+                    .flat_map(|(_, survival)| survival.curve.iter().map(|step| step.survival)),
+                |survival| format!("{} of the trials of every setting.", number::percent(1.0 - survival)),
+            ),
+        ],
         key: Vec::new(),
         table,
     })
@@ -205,6 +218,7 @@ fn curve(
     observations: &[Observation],
     unit: &str,
     what: &str,
+    marks: &Marks,
 ) -> Figure {
     let steps = survival_curve(observations.iter().copied());
     let end = observations
@@ -237,11 +251,8 @@ fn curve(
         points.extend(points.last().map(|last| [end, last[1]]));
         points
     };
-    let mut plot = chart(
-        from_where_it_begins(axis(unit), &steps, end),
-        percent_axis(what),
-        HoverMode::Closest,
-    );
+    let across = from_where_it_begins(axis(unit), &steps, end);
+    let mut plot = marks.chart(across, percent_axis(what));
     if observations.len() > 1 {
         for edge in band(
             what,
@@ -286,9 +297,28 @@ fn curve(
         id: id.into(),
         title: title.into(),
         caption,
-        panels: vec![Panel::new("", plot)],
+        panels: vec![alike(marks.panel("", plot), observations, unit, what)],
         key: Vec::new(),
         table,
+    }
+}
+
+/// The chart, unless all are done at the same time, or none is.
+fn alike(panel: Panel, observations: &[Observation], unit: &str, what: &str) -> Panel {
+    let times = observations.iter().map(|observation| observation.time);
+    let (all, none) = (
+        observations.iter().all(|observation| observation.happened),
+        observations.iter().all(|observation| !observation.happened),
+    );
+    let number = number::count(observations.len() as u64);
+    if none {
+        Panel::words("", format!("0 of {number} {what}."))
+    } else if all {
+        panel.unless_one(times, |time| {
+            format!("{number} of {number} {what}; {unit}: {}.", number::figure(time))
+        })
+    } else {
+        panel
     }
 }
 

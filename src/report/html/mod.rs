@@ -12,10 +12,11 @@ mod connectivity;
 mod data;
 mod detection;
 mod factors;
-mod faults;
 mod figure;
 mod gossip;
+mod happened;
 mod map;
+mod marks;
 mod matrix;
 mod mission;
 mod names;
@@ -29,9 +30,11 @@ mod settings;
 mod study;
 mod table;
 mod verdict;
+mod watch;
 
 pub use page::{PAGE_MARK, page};
 pub use study::study_page;
+pub use watch::{SettingTrials, Watch};
 
 use crate::metrics::{Summary, TrialRecord};
 use crate::scenario::Scenario;
@@ -53,8 +56,8 @@ pub struct PageInput<'a> {
     pub summary: &'a Summary,
     /// The version that ran them.
     pub made_by: &'a str,
-    /// The page beside it on which trial 0 is watched, if there is one.
-    pub replay: Option<&'a str>,
+    /// Where its trials can be watched, if they are of one folder.
+    pub watch: Option<Watch>,
 }
 
 impl PageInput<'_> {

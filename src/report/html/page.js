@@ -1,6 +1,12 @@
 "use strict";
 (() => {
   const charts = () => document.querySelectorAll(".js-plotly-plot");
+  // Names of rows above a chart make room on its left, and then the title of the axis below them may lie over its numbers.
+  charts().forEach((chart) => {
+    if (chart.layout.yaxis2) {
+      Plotly.relayout(chart, { "yaxis.title.standoff": 8 });
+    }
+  });
   // A finger that passes over a chart scrolls the page; a pointer that drags zooms in.
   if (matchMedia("(pointer: coarse), (hover: none), (max-width: 48rem)").matches) {
     charts().forEach((chart) => Plotly.relayout(chart, { dragmode: false }));

@@ -7,7 +7,7 @@ use plotly::Plot;
 
 use super::figure::Figure;
 use super::{
-    PageInput, air, bandwidth, connectivity, detection, gossip, map, mission, overview, radio, robots, series,
+    PageInput, air, bandwidth, connectivity, detection, gossip, map, mission, overview, radio, robots, series, watch,
 };
 use crate::report::number::{count, seconds};
 use crate::scenario::to_ron;
@@ -37,6 +37,8 @@ pub(super) struct Section {
 pub fn page(input: &PageInput) -> String {
     let sections = sections(input);
     let title = format!("{}: bandwidth and detection report", input.scenario.name);
+    let watched = watch::of_trials(input);
+    let replay = input.watch.as_ref().and_then(|watch| watch.replays.get(&0));
     let body = html! {
         header {
             p class="kind" { "Bandwidth and detection report" }
@@ -45,7 +47,8 @@ pub fn page(input: &PageInput) -> String {
             p class="ran" { (ran(input)) }
             nav {
                 @for section in &sections { a href={ "#" (section.id) } { (section.title) } }
-                @if let Some(replay) = input.replay { a href=(replay) { "Watch trial 0" } }
+                @if watched.is_some() { a href="#watch" { "Trials to watch" } }
+                @if let Some(replay) = replay { a href=(replay) { "Watch trial 0" } }
             }
         }
         main {
@@ -59,6 +62,7 @@ pub fn page(input: &PageInput) -> String {
                 p class="note" { "Figures in brackets are 95 % intervals over trials." }
             }
             (numbered(&input.scenario.name, &sections))
+            @if let Some(watched) = &watched { (watched) }
             (scenario(input))
         }
         footer {

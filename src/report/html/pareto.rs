@@ -9,9 +9,10 @@ use super::figure::{Figure, Panel};
 use super::settings::{better, capital, error_bars, near, with_unit};
 use super::table::{Cell, DataTable};
 use crate::metrics::Estimate;
-use crate::metrics::comparison::{Comparison, ParetoPoint};
+use crate::metrics::comparison::{Comparison, ParetoPoint, apart};
 use crate::metrics::figures;
 use crate::report::comparison::label;
+use crate::report::number;
 
 const FRONT: &str = "#d55e00";
 const BEATEN: &str = "#8a8a8a";
@@ -84,6 +85,9 @@ pub fn plane(comparison: &Comparison) -> Option<Figure> {
     let names: Vec<&str> = (0..points.len()).map(name).collect();
     let (labels, key) = labels(&spots, &names);
     plot.add_trace(texts(&labels, points));
+    // How far points are from the first.
+    let off = |point: &ParetoPoint| [apart(point.x, points[0].x), apart(point.y, points[0].y)];
+    let offsets: Vec<f64> = points.iter().flat_map(off).collect();
     let mut table = DataTable::new(&["number", "setting", &with_unit(x), &with_unit(y), "beaten by"]);
     table.rows.extend(points.iter().enumerate().map(|(place, point)| {
         vec![
@@ -109,7 +113,10 @@ pub fn plane(comparison: &Comparison) -> Option<Figure> {
                 " Numbers are those of the list; points too close for a number each share one label."
             }
         ),
-        panels: vec![Panel::of_height("", plot, PLANE)],
+        panels: vec![Panel::of_height("", plot, PLANE).unless_one(offsets, |_| {
+            let [x, y] = [points[0].x, points[0].y].map(number::figure);
+            format!("Both are the same in every setting: {x} and {y}.")
+        })],
         key,
         table,
     })
@@ -261,7 +268,23 @@ fn texts(labels: &[Label], points: &[ParetoPoint]) -> Box<Scatter<f64, f64>> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+
+    proptest! {
+        #[test]
+        fn labels_of_settings_anywhere_do_not_overlap(
+            spots in prop::collection::vec((0.0..270.0_f64, 0.0..330.0_f64), 1..50),
+            crowded in 0.0..1.0_f64,
+            letters in 1..40_usize,
+        ) {
+            let spots: Vec<[f64; 2]> = spots.iter().map(|(x, y)| [crowded * x, crowded * y]).collect();
+            let names: Vec<String> = (0..spots.len()).map(|place| format!("{place}{}", "m".repeat(letters))).collect();
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            check(&spots, &names);
+        }
+    }
 
     fn check(spots: &[[f64; 2]], names: &[&str]) -> usize {
         let (labels, key) = labels(spots, names);

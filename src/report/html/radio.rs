@@ -46,9 +46,11 @@ pub fn lost(input: &PageInput) -> Figure {
     let readable: Vec<String> = rows.iter().map(|(name, _)| name.replace('_', " ")).collect();
     let names = Names::of(readable.iter().map(String::as_str));
     let mut plot = stacked(axis("share of copies offered").tick_suffix(" %"), names.down());
+    let mut shares = Vec::new();
     for &(cause, name) in &causes {
         let share =
             |(_, fates): &(&str, &Fates)| shown(100.0 * of_cause(fates, cause) as f64 / fates.offered.max(1) as f64);
+        shares.extend(rows.iter().map(share));
         let bars = Bar::new(rows.iter().map(share).collect(), names.all())
             .name(words(name))
             .orientation(Orientation::Horizontal)
@@ -68,7 +70,14 @@ pub fn lost(input: &PageInput) -> Figure {
             number::count(frames.total.offered)
         ),
         panels: vec![if total > 0 {
-            Panel::of_rows("", plot, rows.len())
+            Panel::of_rows("", plot, rows.len()).unless_one(shares, |share| {
+                let causes: Vec<String> = causes.iter().map(|(_, name)| name.replace('_', " ")).collect();
+                format!(
+                    "{} on every topic: {}.",
+                    number::percent(share / 100.0),
+                    causes.join(", ")
+                )
+            })
         } else {
             Panel::words("", "No copy was lost.")
         }],

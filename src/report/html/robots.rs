@@ -6,7 +6,7 @@ use plotly::layout::{AxisRange, HoverMode};
 
 use super::PageInput;
 use super::bandwidth::WAYS;
-use super::chart::{DIRECTIONS, Points, axis, band, chart, line, one_value, percent_axis, shown};
+use super::chart::{DIRECTIONS, Points, axis, band, chart, line, percent_axis, shown};
 use super::data::Spread;
 use super::figure::{Figure, Panel};
 use super::table::DataTable;
@@ -94,10 +94,9 @@ pub fn distribution(input: &PageInput) -> Figure {
 
 /// The chart, unless all robots of all trials carry the same.
 fn panel(heading: &'static str, plot: plotly::Plot, trials: &[Vec<f64>]) -> Panel {
-    match one_value(trials.iter().flatten().copied()) {
-        Some(value) => Panel::words(heading, format!("{} B/step, each of them.", number::figure(value))),
-        None => Panel::new(heading, plot),
-    }
+    Panel::new(heading, plot).unless_one(trials.iter().flatten().copied(), |value| {
+        format!("{} B/step, each of them.", number::figure(value))
+    })
 }
 
 /// What each robot carries, by its number.
@@ -184,8 +183,12 @@ pub fn lorenz(input: &PageInput) -> Figure {
         .hover_info(plotly::common::HoverInfo::Skip);
     plot.add_trace(equal);
     let mut words = Vec::new();
+    // How far curves hang below the diagonal.
+    let mut below = vec![0.0];
     for ((direction, _, bytes), colour) in WAYS.into_iter().zip(DIRECTIONS) {
         let curve = mean_lorenz(input.records, bytes);
+        // What comes of rounding hangs nowhere.
+        below.extend(curve.iter().map(|[robots, share]| (1e6 * (robots - share)).round()));
         for [robots, share] in &curve {
             table
                 .rows
@@ -216,7 +219,7 @@ pub fn lorenz(input: &PageInput) -> Figure {
              below the diagonal, the less even the load. The Gini coefficient, twice the area between, is {}; 0 where all carry the same.",
             words.join(" and ")
         ),
-        panels: vec![Panel::new("", plot)],
+        panels: vec![Panel::new("", plot).unless_one(below, |_| "All robots carry the same.".to_owned())],
         key: Vec::new(),
         table,
     }

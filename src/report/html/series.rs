@@ -1,13 +1,12 @@
 //! Traffic over time.
 
 use plotly::common::LineShape;
-use plotly::layout::HoverMode;
 
 use super::PageInput;
-use super::chart::{ALL, Points, axis, band, chart, line, one_value, topic_colour};
+use super::chart::{ALL, Points, axis, band, line, topic_colour};
 use super::data::{Moment, over_time};
-use super::faults;
-use super::figure::{Figure, Panel};
+use super::figure::Figure;
+use super::marks::Marks;
 use super::table::{Cell, DataTable};
 use crate::engine::SimTime;
 use crate::metrics::{RobotBytes, SeriesEntry, TrialRecord};
@@ -23,6 +22,7 @@ const WAYS: [(&str, &str, Way); 2] = [
 /// What a robot carries over time, by topic and direction.
 pub fn by_topic(input: &PageInput) -> Option<Figure> {
     input.records.iter().find(|record| !record.series.is_empty())?;
+    let marks = Marks::of(input);
     let mut table = DataTable::new(&[
         "topic",
         "direction",
@@ -34,7 +34,8 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
     ]);
     let mut panels = Vec::new();
     for (direction, heading, way) in WAYS {
-        let mut plot = chart(axis("time, s"), axis("B/step of a robot, mean"), HoverMode::Closest);
+        let mut plot = marks.chart(axis("time, s"), axis("B/step of a robot, mean"));
+        let mut all = Vec::new();
         for topic in 0..input.topics.len() {
             let name = input.topic(topic);
             let moments = over_time(input.records, |record| means(record, way, topic));
@@ -50,6 +51,7 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
                     quantiles[4].into(),
                 ]);
             }
+            all.extend(ends(&moments));
             let [low, middle, high] = curves(&moments);
             if input.records.len() > 1 {
                 for edge in band(name, topic_colour(topic), &low, &high, &LineShape::Linear) {
@@ -64,8 +66,10 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
                 "%{x:.4g} s: %{y:.4g} B/step",
             ));
         }
-        faults::mark(&mut plot, input);
-        panels.push(Panel::new(heading, plot));
+        let panel = marks.panel(heading, plot);
+        panels.push(panel.unless_one(all, |value| {
+            format!("{} B/step on every topic at all times.", number::figure(value))
+        }));
     }
     Some(Figure {
         id: "series-by-topic".into(),
@@ -74,7 +78,7 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
             "What a robot sends and receives in a control step, headers included, mean over robots, from one sample to the next, topic by \
              topic. {}{}",
             input.band_words(),
-            faults::words(input)
+            marks.words()
         ),
         panels,
         key: Vec::new(),
@@ -118,6 +122,7 @@ fn curves(moments: &[Moment]) -> [Points; 3] {
 /// How far robots are apart over time, on all topics together.
 pub fn over_robots(input: &PageInput) -> Option<Figure> {
     input.records.iter().find(|record| !record.series.is_empty())?;
+    let marks = Marks::of(input);
     let topics = input.topics.len();
     let mut table = DataTable::new(&[
         "direction",
@@ -148,7 +153,7 @@ pub fn over_robots(input: &PageInput) -> Option<Figure> {
             ];
             table.rows.push(row);
         }
-        let mut plot = chart(axis("time, s"), axis("B/step, all topics"), HoverMode::Closest);
+        let mut plot = marks.chart(axis("time, s"), axis("B/step, all topics"));
         let [_, low, _] = curves(&least);
         let [_, middle, _] = curves(&median);
         let [_, high, _] = curves(&most);
@@ -169,14 +174,10 @@ pub fn over_robots(input: &PageInput) -> Option<Figure> {
             let edge = line(name, "#8c8c8c", points, LineShape::Linear, &hover);
             plot.add_trace(edge.show_legend(false));
         }
-        faults::mark(&mut plot, input);
-        panels.push(match one_value(ends(&least).chain(ends(&most))) {
-            Some(value) => Panel::words(
-                heading,
-                format!("{} B/step of every robot at all times.", number::figure(value)),
-            ),
-            None => Panel::new(heading, plot),
-        });
+        let panel = marks.panel(heading, plot);
+        panels.push(panel.unless_one(ends(&least).chain(ends(&most)), |value| {
+            format!("{} B/step of every robot at all times.", number::figure(value))
+        }));
     }
     Some(Figure {
         id: "series-over-robots".into(),
@@ -185,7 +186,7 @@ pub fn over_robots(input: &PageInput) -> Option<Figure> {
             "How far robots are apart in what they send and receive in a control step on all topics together, headers included: the \
              line is the median robot, the band reaches from the robot with the least to that with the most. Each is the median over the trials \
              that still run.{}",
-            faults::words(input)
+            marks.words()
         ),
         panels,
         key: Vec::new(),

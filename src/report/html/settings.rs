@@ -108,7 +108,11 @@ pub fn differences(comparison: &Comparison, figure: &figures::Figure) -> Option<
         let caption = format!(
             "The setting of each row less that of each column, in shares of the largest difference: the darker, the larger. {judged}"
         );
-        (caption, matrix::pairs(comparison, &pairs))
+        let differences = pairs.iter().filter_map(|pair| pair.difference.value);
+        let panel = matrix::pairs(comparison, &pairs).unless_one(differences, |value| {
+            format!("Every difference is {}.", number::figure(value))
+        });
+        (caption, panel)
     } else {
         let rows = pairs.iter().map(|pair| Row {
             name: match comparison.reference {

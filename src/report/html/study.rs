@@ -5,16 +5,18 @@ use maud::{Markup, html};
 use super::figure::Figure;
 use super::page::{Section, document, numbered};
 use super::settings::{by_setting, capital, differences};
-use super::{factors, mission, pareto};
+use super::watch::SettingTrials;
+use super::{factors, mission, pareto, watch};
 use crate::metrics::comparison::{Comparison, Setting};
 use crate::metrics::figures;
 use crate::report::comparison::{compared, fitted, stopping};
 use crate::report::number::NOTHING;
 
-/// The page of a study, [described](crate::report::describe) and run by the version `made_by`.
+/// The page of a study, [described](crate::report::describe) and run by the version `made_by`, and which of its `trials` to watch.
 #[must_use]
-pub fn study_page(comparison: &Comparison, made_by: &str) -> String {
+pub fn study_page(comparison: &Comparison, made_by: &str, trials: &[SettingTrials]) -> String {
     let sections = sections(comparison);
+    let watched = watch::of_settings(comparison, trials);
     let title = format!("{}: settings compared", comparison.study);
     let body = html! {
         header {
@@ -25,7 +27,10 @@ pub fn study_page(comparison: &Comparison, made_by: &str) -> String {
                 (compared(comparison)) "."
                 @if let Some(stopped) = &comparison.stopping { " " (stopping(stopped, comparison)) }
             }
-            nav { @for section in &sections { a href={ "#" (section.id) } { (section.title) } } }
+            nav {
+                @for section in &sections { a href={ "#" (section.id) } { (section.title) } }
+                @if watched.is_some() { a href="#watch" { "Trials to watch" } }
+            }
         }
         main {
             section id="found" {
@@ -36,6 +41,7 @@ pub fn study_page(comparison: &Comparison, made_by: &str) -> String {
                 (in_words(comparison))
             }
             (numbered(&comparison.study, &sections))
+            @if let Some(watched) = &watched { (watched) }
         }
         footer { (made_by) ". This page needs no network: charts, data and script are in it." }
     };

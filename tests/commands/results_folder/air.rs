@@ -135,7 +135,7 @@ fn the_page_has_charts_of_delivery_by_distance_and_of_causes() {
         records: &records,
         summary: &summary(&scenario, &records),
         made_by: "desim 9.9",
-        replay: None,
+        watch: None,
     });
     for words in [
         "<h2>Air</h2>",

@@ -24,7 +24,7 @@ fn page_of(records: &[TrialRecord], topics: &[&str], roles: &[&str], question: &
         records,
         summary: &Summary::of("made-up", topics, roles, records),
         made_by: "desim 9.9",
-        replay: None,
+        watch: None,
     })
 }
 
@@ -239,4 +239,45 @@ fn report_refuses_bad_input_with_status_2_and_writes_nothing() {
     assert!(String::from_utf8(pooled.stdout).unwrap().contains("in 6 trials"));
     assert!(String::from_utf8(pooled.stderr).unwrap().contains("--out FILE"));
     assert!(!dir.path().join("a/report.html").exists());
+}
+
+/// A rumour among ten robots in range of each other, in six trials, and its page.
+fn rumour(dir: &Path, name: &str, rounds: &str, more: &str) -> String {
+    let text = format!(
+        "Scenario(name: \"{name}\", trials: 6, time_limit: 60.0, swarm: (robots: 10, deploy: Cluster(radius: 0.6)), \
+         protocol: Rumor(rounds: {rounds}, completion: Reached), gossip: (relay: (interval: 1.0, fan_out: Peers(1))), \
+         radio: (latency: Constant(0.0)), {more})"
+    );
+    fs::write(dir.join(format!("{name}.ron")), text).unwrap();
+    desim(dir, &["scenario", &format!("{name}.ron"), "--quiet"])
+        .assert()
+        .success();
+    desim(dir, &["report", &format!("results/{name}")]).assert().success();
+    without_library(&fs::read_to_string(dir.join(format!("results/{name}/report.html"))).unwrap())
+}
+
+#[test]
+fn a_rumour_has_its_closed_form_beside_it_where_that_holds_and_failures_are_marked_in_every_chart_over_time() {
+    let dir = tempdir().unwrap();
+    let poisson = rumour(dir.path(), "poisson", "Poisson", "");
+    assert!(poisson.contains("median of the epidemic") && poisson.contains("Dashed are the median"));
+    assert!(!poisson.contains("\"yaxis2\""), "nothing failed");
+    // Six trials: the one in the middle and the worst by the time that the mission took.
+    let command = "desim replay results/poisson --trial ";
+    assert_eq!(poisson.matches(command).count(), 2);
+    let failing = rumour(
+        dir.path(),
+        "failing",
+        "Poisson",
+        "faults: [Crash(robots: [3], at: 1.0, lasts: For(2.0))]",
+    );
+    assert!(
+        !failing.contains("median of the epidemic"),
+        "it does not hold with failures"
+    );
+    let over_time = ["\"time, s\"", "\"control steps\""].map(|axis| failing.matches(axis).count());
+    let marked = failing.matches("\"yaxis2\"").count();
+    assert_eq!(marked, over_time.iter().sum::<usize>(), "{over_time:?}");
+    assert!(marked > 4 && failing.contains("robot 3 fails, in 6 of 6 trials"));
+    assert!(!rumour(dir.path(), "periodic", "Periodic", "").contains("median of the epidemic"));
 }

@@ -381,3 +381,70 @@ fn check_says_that_a_study_is_well_and_how_large_it_is() {
     let out = desim(dir.path(), &["check", "study.ron"]).assert().code(2);
     assert!(text(&out.get_output().stdout).contains("study.ron:2"));
 }
+
+#[test]
+fn the_page_of_a_study_names_trials_to_watch_and_a_study_is_no_folder_of_trials() {
+    let dir = place();
+    let run = |arguments: &[&str]| desim(dir.path(), arguments).assert().success().get_output().clone();
+    run(&["compare", "study.ron", "--quiet"]);
+    run(&["report", "results/patience"]);
+    let page = || fs::read_to_string(dir.path().join("results/patience/report.html")).unwrap();
+    let first = page();
+    // What the table says of each setting's trials, read by hand.
+    let table = &first[first
+        .find("<table class=\"watch\">")
+        .expect("there are trials to watch")..];
+    let table = &table[..table.find("</table>").unwrap()];
+    let commands: Vec<&str> = table
+        .split("<code>")
+        .skip(1)
+        .filter_map(|rest| rest.split("</code>").next())
+        .collect();
+    assert_eq!(commands.len(), 4, "{table}");
+    assert!(!table.contains("<a "), "there is no page yet: {table}");
+    for (command, setting) in commands.iter().zip(["short", "short", "long", "long"]) {
+        assert!(
+            command.starts_with(&format!("desim replay results/patience/{setting} --trial ")),
+            "{command}"
+        );
+    }
+    // The worst by the figure that the study is about makes the most mistakes: what a whole report of that trial's setting says.
+    let words: Vec<&str> = commands[1].split(' ').collect();
+    let mistakes = |setting: &str| {
+        let bytes = fs::read(dir.path().join(format!("results/patience/{setting}/summary.json"))).unwrap();
+        serde_json::from_slice::<Value>(&bytes).unwrap()["detection"]["mistakes"]["value"]
+            .as_u64()
+            .unwrap()
+    };
+    assert!(mistakes("short") > mistakes("long"));
+    run(&words[1..]);
+    run(&["report", "results/patience"]);
+    let trial = words[4];
+    let name = if trial == "0" {
+        "replay.html".to_owned()
+    } else {
+        format!("replay-{trial}.html")
+    };
+    let link = format!("<a href=\"short/{name}\">");
+    assert!(page().contains(&link), "{link}");
+    assert!(dir.path().join("results/patience/short").join(&name).is_file());
+    // Elsewhere the link would lead nowhere.
+    run(&["report", "results/patience", "--out", "elsewhere.html"]);
+    assert!(
+        !fs::read_to_string(dir.path().join("elsewhere.html"))
+            .unwrap()
+            .contains(&link)
+    );
+    for command in [
+        &["replay", "results/patience"][..],
+        &["explain", "results/patience", "--trial", "0", "--robot", "1"],
+    ] {
+        let refused = desim(dir.path(), command).assert().code(2).get_output().clone();
+        let said = text(&refused.stderr);
+        assert!(
+            said.contains("results/patience holds a study") && said.contains("Its settings are short, long."),
+            "{said}"
+        );
+        assert!(said.contains("such as results/patience/short"), "{said}");
+    }
+}

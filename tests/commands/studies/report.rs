@@ -288,7 +288,7 @@ fn of_a_factor_that_was_never_compared_it_is_not_said_that_it_has_no_effect() {
             .ends_with("no factor shows a detectable effect. Of loss nothing can be said, for a setting has no value."),
         "{finding}"
     );
-    let page = study_page(&with_and_without_a_detector(None), "desim 9.9");
+    let page = study_page(&with_and_without_a_detector(None), "desim 9.9", &[]);
     assert!(page.contains("The same wherever there is a value: 0.509"));
     assert!(!page.contains("The same everywhere"));
 }
@@ -365,12 +365,12 @@ fn outline(page: &str) -> String {
 
 #[test]
 fn the_page_of_a_study_with_a_reference() {
-    insta::assert_snapshot!(outline(&study_page(&made_up(Some(0), None), "desim 9.9")));
+    insta::assert_snapshot!(outline(&study_page(&made_up(Some(0), None), "desim 9.9", &[])));
 }
 
 #[test]
 fn the_page_of_a_study_has_a_figure_for_each_comparison_with_its_data_and_asks_for_nothing_from_outside() {
-    let page = study_page(&made_up(None, None), "desim 9.9");
+    let page = study_page(&made_up(None, None), "desim 9.9", &[]);
     let figures = page.matches("<figure ").count();
     assert_eq!(
         figures, 6,
@@ -379,5 +379,5 @@ fn the_page_of_a_study_has_a_figure_for_each_comparison_with_its_data_and_asks_f
     assert_eq!(page.matches("href=\"data:text/csv;").count(), figures);
     assert_eq!(page.matches("class=\"plotly-graph-div\"").count(), figures);
     assert!(page.contains("default-src 'none'"));
-    assert_eq!(page, study_page(&made_up(None, None), "desim 9.9"));
+    assert_eq!(page, study_page(&made_up(None, None), "desim 9.9", &[]));
 }
