@@ -18,6 +18,8 @@ mod perfetto;
 mod standing;
 #[cfg_attr(not(feature = "parquet"), path = "no_tables.rs")]
 mod tables;
+#[cfg(all(test, feature = "command"))]
+mod traced;
 
 use std::io;
 use std::path::Path;

@@ -5,6 +5,8 @@
 mod message;
 mod robots;
 mod scene;
+#[cfg(test)]
+mod tests;
 mod words;
 
 use std::collections::BTreeMap;

@@ -63,3 +63,51 @@ impl Heard {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::json::Events;
+    use super::super::tracks::{INSTANT, Kind, Owner, Slice, Tracks};
+    use super::*;
+
+    fn track() -> Track {
+        let slice = Slice {
+            owner: Owner::Links,
+            kind: Kind::Hears,
+            name: "status",
+            args: serde_json::Value::Null,
+        };
+        let mut tracks = Tracks::new(Events::new(Vec::new()).unwrap(), 9);
+        tracks.slice(slice, SimTime::ZERO, INSTANT).unwrap()
+    }
+
+    #[test]
+    fn the_latest_copies_of_each_topic_are_remembered() {
+        let (at, track) = (SimTime::from_nanos, track());
+        let pair = (ActorId(1), ActorId(2));
+        let mut heard = Heard::default();
+        heard.note(pair, Topic(0), at(1), at(1), track);
+        for time in 2..12 {
+            heard.note(pair, Topic(1), at(time), at(time), track);
+        }
+        let found: Vec<u64> = (0..20).filter(|&time| heard.find(pair, at(time)).is_some()).collect();
+        assert_eq!(found, [1, 8, 9, 10, 11]);
+        assert!(heard.find((ActorId(2), ActorId(1)), at(11)).is_none());
+    }
+
+    #[test]
+    fn pairs_that_nobody_watches_are_forgotten_once_they_are_many() {
+        let (at, track) = (SimTime::from_nanos, track());
+        let mut heard = Heard::default();
+        for robot in 0..2_000 {
+            heard.note((ActorId(robot), ActorId(9_999)), Topic(0), at(1), at(5), track);
+        }
+        heard.watch((ActorId(7), ActorId(9_999)));
+        heard.forget(at(5));
+        assert_eq!(heard.pairs.len(), 2_000, "they may yet be read");
+        heard.enough = 0;
+        heard.forget(at(6));
+        assert_eq!(heard.pairs.len(), 1);
+        assert!(heard.find((ActorId(7), ActorId(9_999)), at(1)).is_some());
+    }
+}

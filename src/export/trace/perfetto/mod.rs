@@ -8,6 +8,8 @@ mod air;
 mod heard;
 mod json;
 mod states;
+#[cfg(test)]
+mod tests;
 mod tracks;
 
 use std::collections::BTreeMap;
@@ -33,11 +35,14 @@ use json::{BEGINNING, Events};
 use states::{States, take_number};
 use tracks::{INSTANT, Tracks};
 
+/// How a gzipped one does: a header without a date and without a system, which few others write.
+const GZIPPED: [u8; 10] = [0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 0xff];
+
 /// Whether a file that begins with these bytes may be such a trace, gzipped or not.
 pub fn is_begun_by(bytes: &[u8]) -> bool {
     let shared = bytes.len().min(BEGINNING.len());
     let is_plain = bytes.starts_with(b"{") && bytes[..shared] == BEGINNING.as_bytes()[..shared];
-    is_plain || bytes.starts_with(&[0x1f, 0x8b])
+    is_plain || bytes.starts_with(&GZIPPED)
 }
 
 /// A trace being written.
@@ -73,9 +78,10 @@ impl Perfetto<Output> {
     /// If the file system refuses.
     pub fn create(path: &Path, run: Run, selection: &Selection, gzipped: bool) -> io::Result<Self> {
         let file = BufWriter::new(File::create(path)?);
-        let out = match gzipped {
-            true => Output::Gzipped(GzEncoder::new(file, Compression::default())),
-            false => Output::Plain(file),
+        let out = if gzipped {
+            Output::Gzipped(GzEncoder::new(file, Compression::default()))
+        } else {
+            Output::Plain(file)
         };
         Self::begin(out, run, selection)
     }

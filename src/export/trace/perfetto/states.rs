@@ -123,10 +123,8 @@ impl States {
         at: SimTime,
         tracks: &mut Tracks<impl Write>,
     ) -> io::Result<()> {
-        let track = match self.is_drawn {
-            true => Some(tracks.open(fault_slice(owner, name), at)?),
-            false => None,
-        };
+        let slice = self.is_drawn.then(|| fault_slice(owner, name));
+        let track = slice.map(|slice| tracks.open(slice, at)).transpose()?;
         self.faults.entry((owner, name)).or_default().push(track);
         Ok(())
     }
