@@ -43,13 +43,13 @@ pub struct Entry<'a> {
 }
 
 /// An instant as events have it. The nearest number to a whole count of nanoseconds is printed with three decimals at most.
-pub fn micros(at: SimTime) -> Option<f64> {
-    Some(at.as_nanos() as f64 / 1e3)
+pub fn micros(at: SimTime) -> f64 {
+    at.as_nanos() as f64 / 1e3
 }
 
 /// A time as events have it.
-pub fn long(span: Span) -> Option<f64> {
-    Some(span.as_nanos() as f64 / 1e3)
+pub fn long(span: Span) -> f64 {
+    span.as_nanos() as f64 / 1e3
 }
 
 /// A list of events being written.

@@ -136,7 +136,7 @@ impl<W: Write> Tracks<W> {
         let lanes = self.lanes.entry((slice.owner, slice.kind)).or_default();
         let lane = lanes.place(begin, begin + lasts);
         let track = self.track(slice.owner, slice.kind, lane)?;
-        self.put(track, "X", slice, begin, long(lasts))?;
+        self.put(track, "X", slice, begin, Some(long(lasts)))?;
         Ok(track)
     }
 
@@ -162,7 +162,7 @@ impl<W: Write> Tracks<W> {
             ph: "E",
             pid: self.process(track.owner),
             tid: track.thread,
-            ts: micros(end),
+            ts: Some(micros(end)),
             ..Entry::default()
         })
     }
@@ -178,7 +178,7 @@ impl<W: Write> Tracks<W> {
             cat: Some("flow"),
             pid: self.process(track.owner),
             tid: track.thread,
-            ts: micros(at),
+            ts: Some(micros(at)),
             id: Some(id),
             // To the slice that is there, and not to the next one.
             bp: (ph == "f").then_some("e"),
@@ -199,7 +199,7 @@ impl<W: Write> Tracks<W> {
             cat: Some("suspicion"),
             pid: process,
             tid: process,
-            ts: micros(at),
+            ts: Some(micros(at)),
             id: Some(id),
             ..Entry::default()
         })
@@ -217,7 +217,7 @@ impl<W: Write> Tracks<W> {
             name,
             pid: process,
             tid: process,
-            ts: micros(at),
+            ts: Some(micros(at)),
             args: Some(values),
             ..Entry::default()
         })
@@ -254,7 +254,7 @@ impl<W: Write> Tracks<W> {
             cat: Some(slice.kind.name()),
             pid: self.process(track.owner),
             tid: track.thread,
-            ts: micros(ts),
+            ts: Some(micros(ts)),
             dur,
             args: (!slice.args.is_null()).then_some(slice.args),
             ..Entry::default()
