@@ -251,6 +251,19 @@ pub enum Outcome {
     Dropped(LossCause),
 }
 
+impl Outcome {
+    /// What tables call it; of a frame that was dropped, the reason.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sent => "sent",
+            Self::Acknowledged => "acknowledged",
+            Self::Unacknowledged => "unacknowledged",
+            Self::Dropped(cause) => cause.name(),
+        }
+    }
+}
+
 /// A frame that a robot's radio is done with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Conclusion {

@@ -3,7 +3,7 @@
 mod place;
 mod select;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -77,6 +77,10 @@ pub enum Format {
     Parquet,
     /// A packet capture, for Wireshark and tshark
     Pcapng,
+    /// A recording for Foxglove, Lichtblick and Rerun: robots, links, events
+    Mcap,
+    /// A trace of events for Perfetto, gzipped if --out ends in .gz
+    Perfetto,
 }
 
 impl From<Format> for trace::Format {
@@ -84,6 +88,8 @@ impl From<Format> for trace::Format {
         match format {
             Format::Parquet => Self::Parquet,
             Format::Pcapng => Self::Pcapng,
+            Format::Mcap => Self::Mcap,
+            Format::Perfetto => Self::Perfetto,
         }
     }
 }
@@ -115,8 +121,9 @@ pub fn run(arguments: &TraceArguments) -> Result<(), Failure> {
         seconds(selection.until.as_secs().min(finished.simulated_s())),
         finished.trial
     );
+    let gzipped = arguments.out.as_deref().and_then(Path::extension) == Some("gz".as_ref());
     let trace = format
-        .create(place.unfinished(), run)
+        .create(place.unfinished(), run, &selection, gzipped)
         .map_err(|error| place.failed(&error))?;
     let log = Log::new(selection, scenario.radio.shared().is_some(), trace);
     let (record, log) = finished.again("write", |stop| watch_trial(scenario, finished.trial, log, stop))?;

@@ -7,9 +7,19 @@ mod capture;
 mod context;
 mod dissector;
 mod link;
+#[cfg(feature = "command")]
+mod mcap;
+#[cfg(feature = "command")]
+mod palette;
 mod pcapng;
+#[cfg(feature = "command")]
+mod perfetto;
+#[cfg(feature = "command")]
+mod standing;
 #[cfg_attr(not(feature = "parquet"), path = "no_tables.rs")]
 mod tables;
+#[cfg(all(test, feature = "command"))]
+mod traced;
 
 use std::io;
 use std::path::Path;
@@ -21,7 +31,7 @@ pub use link::Link;
 
 use crate::engine::SimTime;
 use crate::happenings::Vocabulary;
-use crate::happenings::log::{CopyRecord, Event, Frame, Sink};
+use crate::happenings::log::{CopyRecord, Event, Frame, Selection, Sink};
 use crate::metrics::TrialRecord;
 use crate::motion::World;
 
@@ -32,6 +42,12 @@ pub enum Format {
     Parquet,
     /// A packet capture, read by Wireshark and tshark.
     Pcapng,
+    /// A recording, read by Foxglove, Lichtblick and Rerun.
+    #[cfg(feature = "command")]
+    Mcap,
+    /// A trace of events, read by Perfetto.
+    #[cfg(feature = "command")]
+    Perfetto,
 }
 
 /// A trace that is being written.
@@ -50,6 +66,10 @@ impl Format {
         match self {
             Self::Parquet => None,
             Self::Pcapng => Some("pcapng"),
+            #[cfg(feature = "command")]
+            Self::Mcap => Some("mcap"),
+            #[cfg(feature = "command")]
+            Self::Perfetto => Some("json"),
         }
     }
 
@@ -59,17 +79,26 @@ impl Format {
         match self {
             Self::Parquet => false,
             Self::Pcapng => bytes.starts_with(&[0x0a, 0x0d, 0x0d, 0x0a]),
+            #[cfg(feature = "command")]
+            Self::Mcap => bytes.starts_with(::mcap::MAGIC),
+            #[cfg(feature = "command")]
+            Self::Perfetto => perfetto::is_begun_by(bytes),
         }
     }
 
-    /// Begins a trace of `run` at `path`: a new file, or an empty folder.
+    /// Begins a trace of a `selection` of `run` at `path`: a new file, or an empty folder. `gzipped` where the format is read so, and nothing to the others.
     ///
     /// # Errors
     /// If the file system refuses.
-    pub fn create(self, path: &Path, run: Run) -> io::Result<Box<dyn Trace>> {
+    #[cfg_attr(not(feature = "command"), allow(unused_variables))] // No format of those that are left asks for more than the run.
+    pub fn create(self, path: &Path, run: Run, selection: &Selection, gzipped: bool) -> io::Result<Box<dyn Trace>> {
         Ok(match self {
             Self::Parquet => Box::new(tables::Tables::create(path, run)?),
             Self::Pcapng => Box::new(capture::Capture::create(path, run)?),
+            #[cfg(feature = "command")]
+            Self::Mcap => Box::new(mcap::Recording::create(path, run)?),
+            #[cfg(feature = "command")]
+            Self::Perfetto => Box::new(perfetto::Perfetto::create(path, run, selection, gzipped)?),
         })
     }
 }
@@ -93,6 +122,10 @@ impl Sink for Box<dyn Trace> {
 
     fn event(&mut self, event: &Event) -> io::Result<()> {
         (**self).event(event)
+    }
+
+    fn aside(&mut self, event: &Event) -> io::Result<()> {
+        (**self).aside(event)
     }
 
     fn places(&mut self, world: &World) -> io::Result<()> {

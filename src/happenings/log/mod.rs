@@ -68,6 +68,14 @@ pub trait Sink: Send {
         Ok(())
     }
 
+    /// Something that is not to be in the log, for it happened before, or to others: so that whoever keeps how things stand knows it.
+    ///
+    /// # Errors
+    /// If what is written cannot be.
+    fn aside(&mut self, event: &Event) -> io::Result<()> {
+        Ok(())
+    }
+
     /// Where everybody is, in order of time.
     ///
     /// # Errors
@@ -221,6 +229,8 @@ impl<S: Sink> Log<S> {
         let event = Event { at, robot, what };
         if self.selection.is_then(at) && self.selection.has_event(&event) {
             self.hand(|sink| sink.event(&event));
+        } else if at < self.selection.until {
+            self.hand(|sink| sink.aside(&event));
         }
     }
 

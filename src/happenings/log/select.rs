@@ -61,7 +61,8 @@ impl Selection {
     }
 
     /// Whether this event is, of the time: what befalls links concerns everybody.
-    pub(super) fn has_event(&self, event: &Event) -> bool {
+    #[must_use]
+    pub fn has_event(&self, event: &Event) -> bool {
         let mut ends = event.robot.into_iter().chain(event.what.about()).peekable();
         ends.peek().is_none() || ends.any(|robot| self.has_robot(robot))
     }
