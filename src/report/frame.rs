@@ -11,7 +11,6 @@ use crate::engine::{ActorId, SimTime};
 use crate::happenings::Vocabulary;
 use crate::happenings::log::{CopyRecord, Fate, Frame, Sink};
 use crate::motion::World;
-use crate::radio::Outcome;
 use crate::scenario::Scenario;
 use crate::text::Style;
 
@@ -189,12 +188,7 @@ impl FrameStory {
             messages: messages.collect(),
             began_s: frame.sending.and_then(|sending| sending.began).map(SimTime::as_secs),
             attempts: frame.sending.map(|sending| sending.attempts),
-            outcome: frame.sending.map(|sending| match sending.outcome {
-                Outcome::Sent => "sent",
-                Outcome::Acknowledged => "acknowledged",
-                Outcome::Unacknowledged => "unacknowledged",
-                Outcome::Dropped(cause) => cause.name(),
-            }),
+            outcome: frame.sending.map(|sending| sending.outcome.name()),
             copies: copies
                 .iter()
                 .map(|record| CopyStory {

@@ -56,6 +56,7 @@ pub fn percent(share: f64) -> String {
 }
 
 /// A duration in the unit that suits it.
+#[must_use]
 pub fn seconds(value: f64) -> String {
     match value {
         _ if value <= 0.0 => "0 s".to_owned(),

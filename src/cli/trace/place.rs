@@ -78,11 +78,13 @@ impl Place {
             });
             return copied.map(|()| None).map_err(|error| self.failed(&error));
         };
-        let kept = match self.is_folder {
-            true if path.exists() => fs::remove_dir_all(path),
-            _ => Ok(()),
+        let cleared = if self.is_folder && path.exists() {
+            fs::remove_dir_all(path)
+        } else {
+            Ok(())
         };
-        kept.and_then(|()| fs::rename(&self.unfinished, path))
+        cleared
+            .and_then(|()| fs::rename(&self.unfinished, path))
             .map_err(|error| self.failed(&error))?;
         Ok(Some(shown(path)))
     }

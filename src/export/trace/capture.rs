@@ -5,6 +5,7 @@
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
@@ -31,9 +32,12 @@ pub struct Capture {
     header: MessageHeader,
     file: Pcapng<BufWriter<File>>,
     /// What is captured later than something that is yet to come: when, on which interface, as the how manyth, what. A frame comes before its copies.
-    waiting: BinaryHeap<Reverse<(SimTime, u32, u64, Vec<u8>, Option<String>)>>,
+    waiting: BinaryHeap<Reverse<Packet>>,
     captured: u64,
 }
+
+/// When, on which interface, as the how manyth; its bytes, and a comment.
+type Packet = (SimTime, u32, u64, Vec<u8>, Option<String>);
 
 /// What stands in front of each message in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +115,8 @@ impl Capture {
 /// By how much accounted bytes of a frame of one message are more than captured ones.
 fn constant(run: &Run, header: MessageHeader) -> i64 {
     let accounted = i64::from(run.frame_header) + i64::from(run.message_header);
-    accounted - run.link.header_bytes() as i64 - i64::from(header.bytes())
+    let captured = run.link.header_bytes() as u32 + u32::from(header.bytes());
+    accounted - i64::from(captured)
 }
 
 fn comment(run: &Run, header: MessageHeader) -> String {
@@ -192,7 +197,7 @@ fn fates_in_words(frame: &Frame) -> String {
     let mut words = format!("{} of {} delivered", frame.delivered, frame.offered);
     for (cause, &copies) in LossCause::ALL.iter().zip(&frame.lost) {
         if copies > 0 {
-            words += &format!(", {copies} lost: {}", cause.name().replace('_', " "));
+            let _ = write!(words, ", {copies} lost: {}", cause.name().replace('_', " "));
         }
     }
     words

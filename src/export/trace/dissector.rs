@@ -76,7 +76,6 @@ impl Fields {
                 .map(|(value, name)| format!("[{value}] = {}", quoted(name)))
                 .collect();
             let more = match (*kind, names.is_empty()) {
-                ("bool", _) => String::new(),
                 ("uint32" | "uint64", true) => ", base.DEC".to_owned(),
                 ("uint32" | "uint64", false) => format!(", base.DEC, {{{}}}", names.join(", ")),
                 ("bits", _) => ", base.HEX".to_owned(),

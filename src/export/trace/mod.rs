@@ -7,18 +7,14 @@ mod capture;
 mod context;
 mod dissector;
 mod link;
-#[cfg(feature = "command")]
 mod mcap;
-#[cfg(feature = "command")]
 mod palette;
 mod pcapng;
-#[cfg(feature = "command")]
 mod perfetto;
-#[cfg(feature = "command")]
 mod standing;
 #[cfg_attr(not(feature = "parquet"), path = "no_tables.rs")]
 mod tables;
-#[cfg(all(test, feature = "command"))]
+#[cfg(test)]
 mod traced;
 
 use std::io;
@@ -43,10 +39,8 @@ pub enum Format {
     /// A packet capture, read by Wireshark and tshark.
     Pcapng,
     /// A recording, read by Foxglove, Lichtblick and Rerun.
-    #[cfg(feature = "command")]
     Mcap,
     /// A trace of events, read by Perfetto.
-    #[cfg(feature = "command")]
     Perfetto,
 }
 
@@ -66,9 +60,7 @@ impl Format {
         match self {
             Self::Parquet => None,
             Self::Pcapng => Some("pcapng"),
-            #[cfg(feature = "command")]
             Self::Mcap => Some("mcap"),
-            #[cfg(feature = "command")]
             Self::Perfetto => Some("json"),
         }
     }
@@ -79,9 +71,7 @@ impl Format {
         match self {
             Self::Parquet => false,
             Self::Pcapng => bytes.starts_with(&[0x0a, 0x0d, 0x0d, 0x0a]),
-            #[cfg(feature = "command")]
             Self::Mcap => bytes.starts_with(::mcap::MAGIC),
-            #[cfg(feature = "command")]
             Self::Perfetto => perfetto::is_begun_by(bytes),
         }
     }
@@ -90,14 +80,11 @@ impl Format {
     ///
     /// # Errors
     /// If the file system refuses.
-    #[cfg_attr(not(feature = "command"), allow(unused_variables))] // No format of those that are left asks for more than the run.
     pub fn create(self, path: &Path, run: Run, selection: &Selection, gzipped: bool) -> io::Result<Box<dyn Trace>> {
         Ok(match self {
             Self::Parquet => Box::new(tables::Tables::create(path, run)?),
             Self::Pcapng => Box::new(capture::Capture::create(path, run)?),
-            #[cfg(feature = "command")]
             Self::Mcap => Box::new(mcap::Recording::create(path, run)?),
-            #[cfg(feature = "command")]
             Self::Perfetto => Box::new(perfetto::Perfetto::create(path, run, selection, gzipped)?),
         })
     }

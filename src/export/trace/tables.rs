@@ -14,7 +14,7 @@ use crate::happenings::Vocabulary;
 use crate::happenings::log::{CopyRecord, Event, Frame, Message, Sink, What, address_name};
 use crate::metrics::TrialRecord;
 use crate::motion::World;
-use crate::radio::{LossCause, Outcome};
+use crate::radio::LossCause;
 
 /// The tables of a trace being written.
 pub struct Tables {
@@ -173,16 +173,6 @@ fn hexadecimal(bytes: &[u8]) -> String {
     text
 }
 
-/// What tables call the end of a frame at its sender.
-const fn outcome_name(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Sent => "sent",
-        Outcome::Acknowledged => "acknowledged",
-        Outcome::Unacknowledged => "unacknowledged",
-        Outcome::Dropped(cause) => cause.name(),
-    }
-}
-
 fn frame_columns() -> Vec<Column<FrameRow>> {
     type Col = Column<FrameRow>;
     vec![
@@ -196,7 +186,7 @@ fn frame_columns() -> Vec<Column<FrameRow>> {
         Col::count("payload_bytes", |row| row.frame.payloads.len() as u64),
         Col::optional_f64("began_s", |row| Some(row.frame.sending?.began?.as_secs())),
         Col::optional_id("attempts", |row| Some(row.frame.sending?.attempts)),
-        Col::optional_text("outcome", |row| Some(outcome_name(row.frame.sending?.outcome).into())),
+        Col::optional_text("outcome", |row| Some(row.frame.sending?.outcome.name().into())),
         Col::count("offered", |row| row.frame.offered),
         Col::count("delivered", |row| row.frame.delivered),
         Col::count("lost", |row| row.frame.lost()),

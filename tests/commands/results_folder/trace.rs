@@ -171,7 +171,7 @@ fn events_are_those_of_the_record(record: &TrialRecord, kept: &Kept) {
         ended
     );
     let suspicions = count(|what| matches!(what, What::Suspects(..)));
-    assert_eq!(suspicions, record.detection.suspicions.len() as usize);
+    assert_eq!(suspicions, record.detection.suspicions.len());
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn a_log_of_some_robots_and_topics_has_what_these_send_and_are_offered() {
     let scenario = &scenarios()[1];
     let (_, whole) = log(scenario, Selection::default());
     let chosen = [ActorId(3), ActorId(5)];
-    let (status, _) = (desim::protocol::Topic(0), ());
+    let status = desim::protocol::Topic(0);
     let selection = Selection {
         robots: Some(chosen.into()),
         topics: Some([status].into()),

@@ -86,7 +86,8 @@ proptest! {
             ),
             Message::Request(Request::Release { to }) => prop_assert_eq!(words, format!("message release, to {to}")),
             Message::ParentStrand(strand) => {
-                let robots: String = strand.robots.iter().map(|robot| format!(", robot {robot}")).collect();
+                let robots: Vec<String> = strand.robots.iter().map(|robot| format!(", robot {robot}")).collect();
+                let robots = robots.concat();
                 let (chain, next, number) = (strand.chain, strand.next, strand.robots.len());
                 let wanted = format!("message parent strand, chain {chain}, next {next}, number of robots {number}{robots}");
                 prop_assert_eq!(words, wanted);

@@ -21,6 +21,8 @@ const MARK: u8 = 0x40;
 const PING: u8 = 0x40;
 const REQUEST: u8 = 0x41;
 const ACK: u8 = 0x42;
+/// What kinds are called.
+const KINDS: &[(u64, &str)] = &[(PING as u64, "ping"), (REQUEST as u64, "request"), (ACK as u64, "ack")];
 /// Bytes of the longest number.
 const LONGEST: usize = 5;
 
@@ -91,10 +93,7 @@ impl Probe {
     /// How its bytes lie: for the layout of a protocol that carries it, a case for each kind.
     #[must_use]
     pub fn layout() -> Vec<(RangeInclusive<u8>, Vec<Part>)> {
-        let kind = Part::named(
-            "probe",
-            &[(PING as u64, "ping"), (REQUEST as u64, "request"), (ACK as u64, "ack")],
-        );
+        let kind = Part::named("probe", KINDS);
         let to = || vec![Part::robot_varint("to")];
         let request = vec![Part::list("number asked", to()), Part::robot_varint("probed")];
         let claims = Part::named("claim", &[(0, "alive"), (1, "suspected"), (2, "down")]);
