@@ -326,6 +326,26 @@ class Driver:
             self.expect(" of " in page.inner_text("#events-title"), "the filter by followed robot")
             only.uncheck()
 
+    def reliance(self) -> None:
+        """Whom a robot relies on, at a time in the middle of the run, and what its changes of role say."""
+        page, middle = self.page, self.meta["duration_s"] * 0.8
+        last = {}
+        for t, robot, others in self.meta["relies"]:
+            if t <= middle:
+                last[robot] = others
+        robot, others = next(((robot, others) for robot, others in last.items() if others), (None, []))
+        if robot is None:
+            return
+        self.seek(middle)
+        page.fill("#robot-number", str(robot))
+        page.press("#robot-number", "Enter")
+        self.settle()
+        wanted = ", ".join(map(str, others))
+        self.expect(wanted in page.inner_text("#robot"), f"robot {robot} relies on {wanted}, and the page does not say so")
+        changes = [event for event in self.meta["events"] if event["kind"] == "role"]
+        read = [event for event in changes if any(line.startswith("had just read from") for line in event["detail"])]
+        self.expect(len(read) > 0, f"none of {len(changes)} changes of role says what was read before it")
+
     def speed(self) -> float:
         """Frames a second while the run plays with everything on."""
         self.page.evaluate("() => { desimReplay.follow(-1); desimReplay.seek(0); desimReplay.play(); scrollTo(0, 0); }")
@@ -355,7 +375,7 @@ def drive(context: BrowserContext, path: pathlib.Path, data: Data, width: str, p
     for check in ([] if touch else [driver.data_shown]) + [driver.keys, driver.controls, driver.messages]:
         check()
     driver.following(touch)
-    for check in (driver.pinch if touch else driver.video, driver.fragment, driver.events):
+    for check in (driver.pinch if touch else driver.video, driver.fragment, driver.events, driver.reliance):
         check()
     driver.expect((overflow := page.evaluate(OVERFLOW)) <= 0, f"the page is {overflow} px wider than its window")
     found.extend(page.evaluate(CROWDED))

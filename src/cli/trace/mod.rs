@@ -1,7 +1,7 @@
 //! `desim trace`: runs one finished trial again and writes a part of it for other programs to read.
 
 mod place;
-mod select;
+pub mod select;
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ use crate::export::trace::{self, Run, dissector};
 use crate::happenings::log::Log;
 use crate::report::seconds;
 use place::Place;
-use select::Robots;
+use select::Part;
 
 /// What `desim trace --help` says.
 pub const LONG_ABOUT: &str = "\
@@ -47,21 +47,9 @@ pub struct TraceArguments {
     /// Number of the trial, from 0
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub trial: u32,
-    /// From when on, seconds [default: from the beginning]
-    #[arg(long, value_name = "SECONDS")]
-    pub from: Option<f64>,
-    /// Up to when, seconds [default: to the end]
-    #[arg(long, visible_alias = "to", value_name = "SECONDS")]
-    pub until: Option<f64>,
-    /// Only these robots, such as 3,7-9: what they send and are offered, and what happens to them
-    #[arg(long, value_name = "ROBOTS")]
-    pub robots: Option<Robots>,
-    /// Only frames with messages on these topics, by their names, with commas between them
-    #[arg(long, value_name = "TOPICS", value_delimiter = ',')]
-    pub topics: Option<Vec<String>>,
-    /// Seconds from one look at places to the next [default: the motion's tick]
-    #[arg(long, value_name = "SECONDS")]
-    pub places_every: Option<f64>,
+    /// What part of it
+    #[command(flatten)]
+    pub part: Part,
     /// Where to write it, - for standard output [default: trace in DIR, with the format's ending; of another trial than 0 trace-K]
     #[arg(long, value_name = "PATH")]
     pub out: Option<PathBuf>,
@@ -113,7 +101,7 @@ pub fn run(arguments: &TraceArguments) -> Result<(), Failure> {
         finished.digest(),
         reach(scenario, finished.trial),
     );
-    let selection = select::selection(arguments, &run, finished.simulated_s())?;
+    let selection = arguments.part.of(&run, finished.simulated_s())?;
     let place = Place::of(&finished.dir, finished.trial, format, arguments.out.as_deref())?;
     let words = format!(
         "holds {} to {} of trial {}",

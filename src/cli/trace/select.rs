@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::str::FromStr;
 
-use super::TraceArguments;
+use clap::Args;
+
 use crate::cli::failure::Failure;
 use crate::cli::finished_trial::refuse;
 use crate::engine::{ActorId, SimTime, Span};
@@ -11,6 +12,26 @@ use crate::export::trace::Run;
 use crate::happenings::log::Selection;
 use crate::protocol::Topic;
 use crate::report::seconds;
+
+/// A part of a trial.
+#[derive(Debug, Args)]
+pub struct Part {
+    /// From when on, seconds [default: from the beginning]
+    #[arg(long, value_name = "SECONDS")]
+    pub from: Option<f64>,
+    /// Up to when, seconds [default: to the end]
+    #[arg(long, visible_alias = "to", value_name = "SECONDS")]
+    pub until: Option<f64>,
+    /// Only these robots, such as 3,7-9: what they send and are offered, and what happens to them
+    #[arg(long, value_name = "ROBOTS")]
+    pub robots: Option<Robots>,
+    /// Only frames with messages on these topics, by their names, with commas between them
+    #[arg(long, value_name = "TOPICS", value_delimiter = ',')]
+    pub topics: Option<Vec<String>>,
+    /// Seconds from one look at places to the next [default: the motion's tick]
+    #[arg(long, value_name = "SECONDS")]
+    pub places_every: Option<f64>,
+}
 
 /// Robots by their numbers, such as `3,7-9`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,40 +74,42 @@ impl Robots {
     }
 }
 
-/// The part of `run` that is asked for, which lasted `simulated_s` seconds.
-///
-/// # Errors
-/// If there is none.
-pub fn selection(arguments: &TraceArguments, run: &Run, simulated_s: f64) -> Result<Selection, Failure> {
-    let time = |name: &str, given: Option<f64>| match given {
-        Some(time) if !time.is_finite() || time < 0.0 => refuse(format!(
-            "--{name} {time} is no time: give seconds from 0 on, such as 12.5"
-        )),
-        given => Ok(given),
-    };
-    let from = time("from", arguments.from)?.unwrap_or(0.0);
-    let until = time("until", arguments.until)?;
-    let every = time("places-every", arguments.places_every)?.unwrap_or(0.0);
-    if from > simulated_s {
-        return refuse(format!(
-            "--from {from} is behind the end of the trial, which lasted {}",
-            seconds(simulated_s)
-        ));
+impl Part {
+    /// The part of `run` that is asked for, which lasted `simulated_s` seconds.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn of(&self, run: &Run, simulated_s: f64) -> Result<Selection, Failure> {
+        let time = |name: &str, given: Option<f64>| match given {
+            Some(time) if !time.is_finite() || time < 0.0 => refuse(format!(
+                "--{name} {time} is no time: give seconds from 0 on, such as 12.5"
+            )),
+            given => Ok(given),
+        };
+        let from = time("from", self.from)?.unwrap_or(0.0);
+        let until = time("until", self.until)?;
+        let every = time("places-every", self.places_every)?.unwrap_or(0.0);
+        if from > simulated_s {
+            return refuse(format!(
+                "--from {from} is behind the end of the trial, which lasted {}",
+                seconds(simulated_s)
+            ));
+        }
+        if let Some(until) = until.filter(|until| *until <= from) {
+            return refuse(format!(
+                "from {from} until {until} is no time at all: --until must be greater than --from"
+            ));
+        }
+        let topics = self.topics.as_ref().map(|names| topics(names, run)).transpose()?;
+        let robots = self.robots.as_ref();
+        Ok(Selection {
+            from: at(from),
+            until: until.map_or(SimTime::NEVER, at),
+            robots: robots.map(|robots| robots.of(run.scenario.swarm.robots)).transpose()?,
+            topics,
+            places_every: Span::from_secs(every.min(LONGEST_S)),
+        })
     }
-    if let Some(until) = until.filter(|until| *until <= from) {
-        return refuse(format!(
-            "from {from} until {until} is no time at all: --until must be greater than --from"
-        ));
-    }
-    let topics = arguments.topics.as_ref().map(|names| topics(names, run)).transpose()?;
-    let robots = arguments.robots.as_ref();
-    Ok(Selection {
-        from: at(from),
-        until: until.map_or(SimTime::NEVER, at),
-        robots: robots.map(|robots| robots.of(run.scenario.swarm.robots)).transpose()?,
-        topics,
-        places_every: Span::from_secs(every.min(LONGEST_S)),
-    })
 }
 
 /// More seconds than any run has, and few enough for their nanoseconds to be counted.

@@ -153,6 +153,13 @@ impl Sink for Tables {
         }])
     }
 
+    fn aside(&mut self, event: &Event) -> io::Result<()> {
+        if let (What::Enters(role), Some(robot)) = (&event.what, event.robot) {
+            self.roles[robot.index()] = *role;
+        }
+        Ok(())
+    }
+
     fn places(&mut self, world: &World) -> io::Result<()> {
         let at = world.now();
         let (run, roles) = (&self.run, &self.roles);
