@@ -5,11 +5,14 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::changes::Change;
+use crate::engine::Span;
 use crate::metrics::detection::{Cause, Suspicion, Verdict};
 use crate::metrics::{FaultKind, Outcome, TrialRecord};
 use crate::protocol::Layout;
 use crate::radio::LossCause;
 
+/// A suspicion so new may be why a robot changes its role.
+const LATELY: Span = Span::from_nanos(5_000_000_000);
 /// So many a page lists.
 const MOST_EVENTS: usize = 20_000;
 
@@ -75,7 +78,8 @@ impl Told<'_> {
         let role = |number: u8| self.roles.get(usize::from(number)).copied().unwrap_or("unknown");
         let mut detail = Vec::new();
         if !change.relied.is_empty() {
-            let relied: Vec<String> = change.relied.iter().map(ToString::to_string).collect();
+            let mut relied: Vec<String> = change.relied.iter().map(ToString::to_string).collect();
+            relied.dedup();
             detail.push(format!("relied on {} until then", relied.join(", ")));
         }
         for read in &change.read {
@@ -88,12 +92,17 @@ impl Told<'_> {
         let held = suspicions.filter(|suspicion| {
             suspicion.observer == *robot && suspicion.at <= *at && suspicion.until.is_none_or(|until| *at < until)
         });
-        for suspicion in held.filter(|suspicion| change.relied.contains(&suspicion.subject)) {
-            detail.push(format!(
-                "suspected {}, on which it relied, since {:.3} s",
-                suspicion.subject,
-                suspicion.at.as_secs()
-            ));
+        for suspicion in held {
+            let relied = change.relied.contains(&suspicion.subject);
+            // Of others only those that are new: what a robot has believed for long leads to nothing now.
+            if relied || at.since(suspicion.at) <= LATELY {
+                let on_which = if relied { ", on which it relied," } else { "" };
+                detail.push(format!(
+                    "suspected {}{on_which} since {:.3} s",
+                    suspicion.subject,
+                    suspicion.at.as_secs()
+                ));
+            }
         }
         let title = format!("{robot}: {} becomes {}", role(change.from), role(change.to));
         Event {
