@@ -104,7 +104,7 @@ impl Told<'_> {
                 ));
             }
         }
-        let title = format!("{robot}: {} becomes {}", role(change.from), role(change.to));
+        let title = format!("{robot}: {} → {}", role(change.from), role(change.to));
         Event {
             detail,
             ..Event::plain(at.as_secs(), "role", Some(robot.0), title)
