@@ -49,16 +49,39 @@ pub fn is_trace(name: &str) -> bool {
     let (name, ending) = name
         .split_once('.')
         .map_or((name, None), |(name, ending)| (name, Some(ending)));
-    let number = name
+    // Not `trace7`, nor `trace-007`, nor `trace-0`: those are somebody else's.
+    let is_numbered = name
         .strip_prefix(TRACE)
-        .map(|number| number.strip_prefix('-').unwrap_or(number));
-    let is_numbered = number.is_some_and(|number| number.bytes().all(|digit| digit.is_ascii_digit()));
+        .is_some_and(|number| match number.strip_prefix('-') {
+            None => number.is_empty(),
+            Some(number) => number
+                .parse::<u32>()
+                .is_ok_and(|trial| trial > 0 && trial.to_string() == number),
+        });
     is_numbered && ending.is_none_or(|ending| TRACE_ENDINGS.contains(&ending))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn traces_are_known_by_their_names() {
+        for name in ["trace", "trace-7", "trace.pcapng", "trace-120.mcap", "trace-1.json.gz"] {
+            assert!(is_trace(name), "{name}");
+        }
+        for name in [
+            "trace7.pcapng",
+            "trace-.pcapng",
+            "trace-0.mcap",
+            "trace-007.mcap",
+            "trace.txt",
+            "traces",
+            "trace.pcapng.bak",
+        ] {
+            assert!(!is_trace(name), "{name}");
+        }
+    }
 
     #[test]
     fn pages_of_trials_are_known_by_their_names() {

@@ -198,8 +198,6 @@ pub struct Entry {
     pub read_ron: fn(RonReader<'_, '_, '_, '_>) -> Result<(), ron::Error>,
     /// How its messages lie in their bytes, if that is described.
     pub layout: fn() -> Layout,
-    /// Names of all its topics.
-    pub topics: &'static [&'static str],
     /// The schema of the config, or a reference to it.
     pub schema: fn(&mut SchemaGenerator) -> Schema,
     /// The schema itself.
@@ -217,7 +215,6 @@ impl Entry {
             read: |reader| erased_serde::deserialize::<K>(reader).map(|config| Arc::new(config) as Arc<dyn AnyKind>),
             read_ron: |reader| K::deserialize(reader).map(drop),
             layout: K::layout,
-            topics: K::Robot::TOPICS,
             schema: SchemaGenerator::subschema_for::<K>,
             schema_in_place: <K as JsonSchema>::json_schema,
         }

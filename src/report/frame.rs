@@ -8,7 +8,6 @@ use super::grid::{Column, Grid};
 use super::layout::Page;
 use super::number::{NOTHING, count};
 use crate::engine::{ActorId, SimTime};
-use crate::happenings::Vocabulary;
 use crate::happenings::log::{CopyRecord, Fate, Frame, Sink};
 use crate::motion::World;
 use crate::scenario::Scenario;
@@ -48,10 +47,6 @@ impl FrameTrace {
 }
 
 impl Sink for FrameTrace {
-    fn begin(&mut self, _: &Vocabulary, _: &World) -> io::Result<()> {
-        Ok(())
-    }
-
     fn spoke(&mut self, now: SimTime, robot: ActorId, frames: u32, world: &World) -> io::Result<()> {
         if robot != self.sender {
             return Ok(());

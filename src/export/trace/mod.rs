@@ -25,7 +25,7 @@ pub use context::Run;
 pub use dissector::dissector;
 pub use link::Link;
 
-use crate::engine::SimTime;
+use crate::engine::{ActorId, SimTime};
 use crate::happenings::Vocabulary;
 use crate::happenings::log::{CopyRecord, Event, Frame, Selection, Sink};
 use crate::metrics::TrialRecord;
@@ -113,6 +113,10 @@ impl Sink for Box<dyn Trace> {
 
     fn aside(&mut self, event: &Event) -> io::Result<()> {
         (**self).aside(event)
+    }
+
+    fn spoke(&mut self, now: SimTime, robot: ActorId, frames: u32, world: &World) -> io::Result<()> {
+        (**self).spoke(now, robot, frames, world)
     }
 
     fn places(&mut self, world: &World) -> io::Result<()> {

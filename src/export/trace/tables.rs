@@ -9,7 +9,8 @@ use super::super::files::TRACE_TABLES;
 use super::super::table::{Column, Table};
 use super::Trace;
 use super::context::Run;
-use crate::engine::SimTime;
+use super::standing::Standing;
+use crate::engine::{ActorId, SimTime};
 use crate::happenings::Vocabulary;
 use crate::happenings::log::{CopyRecord, Event, Frame, Message, Sink, What, address_name};
 use crate::metrics::TrialRecord;
@@ -24,7 +25,7 @@ pub struct Tables {
     copies: Table<CopyRow>,
     events: Table<EventRow>,
     places: Table<PlaceRow>,
-    roles: Vec<u8>,
+    standing: Standing,
 }
 
 struct FrameRow {
@@ -78,7 +79,7 @@ impl Tables {
             copies: Table::create(&path(2), copy_columns())?,
             events: Table::create(&path(3), event_columns())?,
             places: Table::create(&path(4), place_columns())?,
-            roles: Vec::new(),
+            standing: Standing::default(),
         })
     }
 }
@@ -95,7 +96,7 @@ impl Trace for Tables {
 
 impl Sink for Tables {
     fn begin(&mut self, _: &Vocabulary, world: &World) -> io::Result<()> {
-        self.roles = vec![0; world.positions().len()];
+        self.standing = Standing::of(world.positions().len());
         Ok(())
     }
 
@@ -128,9 +129,7 @@ impl Sink for Tables {
     }
 
     fn event(&mut self, event: &Event) -> io::Result<()> {
-        if let (What::Enters(role), Some(robot)) = (&event.what, event.robot) {
-            self.roles[robot.index()] = *role;
-        }
+        self.standing.take(event);
         let (mut number, mut name, mut value, mut others) = (None, None, None, Vec::new());
         match &event.what {
             What::Fails(effect) | What::Recovers(effect) => name = Some(effect.name()),
@@ -154,20 +153,19 @@ impl Sink for Tables {
     }
 
     fn aside(&mut self, event: &Event) -> io::Result<()> {
-        if let (What::Enters(role), Some(robot)) = (&event.what, event.robot) {
-            self.roles[robot.index()] = *role;
-        }
+        self.standing.take(event);
         Ok(())
     }
 
     fn places(&mut self, world: &World) -> io::Result<()> {
         let at = world.now();
-        let (run, roles) = (&self.run, &self.roles);
-        self.places.extend((0..).zip(roles).map(|(robot, &role)| PlaceRow {
+        let (run, standing) = (&self.run, &self.standing);
+        let robots = 0..standing.robots() as u32;
+        self.places.extend(robots.map(|robot| PlaceRow {
             at,
             robot,
-            place: world.pose(crate::engine::ActorId(robot), at).into(),
-            role: run.role(role),
+            place: world.pose(ActorId(robot), at).into(),
+            role: run.role(standing.role(robot as usize)),
         }))
     }
 }
