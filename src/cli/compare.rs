@@ -8,9 +8,11 @@ use clap::builder::RangedU64ValueParser;
 
 use super::check::{self, Deny};
 use super::failure::Failure;
+use super::shard;
 use super::shown::{Format, print_comparison};
 use super::told::{Teller, options};
-use crate::runs::{StudyRun, Until, run_study};
+use crate::experiment::Shard;
+use crate::runs::{StudyRun, Until, run_study, run_study_shard};
 use crate::scenario::{Plan, contents, is_study, load_study, plan_of_files};
 use crate::simulation::DriverKind;
 use crate::text::shown;
@@ -27,7 +29,10 @@ Scenario files keep their own seeds and trials: where seeds are equal they are p
 
 Results of each setting go to a folder of its own below the study's, beside comparison.json and comparison.parquet. Finished trials \
 are kept: after an interruption the same command goes on where it stopped, to the same bytes. Results are never overwritten without \
---force.";
+--force.
+
+Trials can be spread over processes and machines: --shard 2/4 runs the second of four parts of each setting, `desim merge` puts the parts \
+together, and says with --until-width how many trials more it takes.";
 
 /// Arguments of `desim compare`.
 #[derive(Debug, Args)]
@@ -38,7 +43,8 @@ pub struct CompareArguments {
     /// Number of trials of each setting, instead of the study's or the scenarios'
     #[arg(long, value_name = "N", value_parser = RangedU64ValueParser::<u32>::new().range(1..=1_000_000))]
     pub trials: Option<u32>,
-    /// Trials that run at a time, of all settings together [default: one for each processor]; results do not depend on it
+    /// Trials that run at a time, of all settings together [default: one for each processor that this process may use]; results do not
+    /// depend on it
     #[arg(long, value_name = "J")]
     pub jobs: Option<NonZeroUsize>,
     /// Folder for the results [default: results/NAME, the study's name]
@@ -62,8 +68,11 @@ pub struct CompareArguments {
     /// Refuse what `desim check` warns of, for scripts: nothing is run or written
     #[arg(long, value_enum, value_name = "WHAT")]
     pub deny: Option<Deny>,
+    /// The shard to run, instead of all trials
+    #[arg(long, value_name = "I/N", value_parser = shard::shard, help = shard::HELP, long_help = shard::LONG_HELP)]
+    pub shard: Option<Shard>,
     /// Delete the results that are in the folder, and run again
-    #[arg(long)]
+    #[arg(long, conflicts_with = "shard")]
     pub force: bool,
 }
 
@@ -93,6 +102,10 @@ pub fn run(arguments: &CompareArguments) -> Result<(), Failure> {
     };
     let options = options(arguments.jobs, DriverKind::Inline, arguments.force)?;
     let mut teller = Teller::of_study(&dir, arguments.quiet);
+    if let Some(shard) = arguments.shard {
+        let end = run_study_shard(&run, shard, &dir, &options, |happening| teller.tell(happening))?;
+        return shard::print(shard, &plan.name, &dir, end, (arguments.quiet, arguments.format));
+    }
     let results = run_study(&run, &dir, &options, |happening| teller.tell(happening))?;
     if arguments.quiet && arguments.format == Format::Text {
         return Ok(());

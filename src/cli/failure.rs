@@ -5,7 +5,7 @@ use std::io;
 use super::output::style;
 use crate::experiment::{PartsError, TrialError};
 use crate::export::{FolderError, ResultsError, WriteError};
-use crate::runs::{Cause, Other, RunsError};
+use crate::runs::{Cause, MergeError, Other, RunsError};
 use crate::scenario::Report;
 
 /// Exit status where the input is wrong.
@@ -92,6 +92,17 @@ impl From<WriteError> for Failure {
         match error {
             WriteError::Parts(error) => error.into(),
             WriteError::Folder(error) => error.into(),
+        }
+    }
+}
+
+impl From<MergeError> for Failure {
+    fn from(error: MergeError) -> Self {
+        match error {
+            MergeError::Runs(error) => error.into(),
+            // The machine is at fault, or the protocol: nothing that the user has chosen.
+            error @ MergeError::Contradiction { .. } => Self::other(&error),
+            wrong => Self::Input(format!("error: {wrong}")),
         }
     }
 }

@@ -17,6 +17,7 @@ mod failure;
 mod finished_trial;
 mod interrupt;
 pub mod log;
+pub mod merge;
 pub mod new;
 mod output;
 mod page_file;
@@ -25,7 +26,9 @@ pub mod replay;
 pub mod report;
 pub mod scenario;
 pub mod schema;
+mod shard;
 pub mod shown;
+pub mod status;
 mod told;
 pub mod trace;
 pub mod validate;
@@ -42,11 +45,13 @@ use compare::CompareArguments;
 use explain::ExplainArguments;
 use failure::FAULTY_INPUT;
 pub use failure::Failure;
+use merge::MergeArguments;
 use new::NewArguments;
 use replay::ReplayArguments;
 use report::ReportArguments;
 use scenario::ScenarioArguments;
 use shown::Format;
+use status::StatusArguments;
 use trace::TraceArguments;
 use validate::ValidateArguments;
 
@@ -102,6 +107,12 @@ pub enum Command {
     /// Compare the settings of a study, or several scenarios, under common random numbers
     #[command(long_about = compare::LONG_ABOUT)]
     Compare(CompareArguments),
+    /// Put together what shards of a scenario or a study have left
+    #[command(long_about = merge::LONG_ABOUT)]
+    Merge(MergeArguments),
+    /// Say how far trials are that run here or elsewhere
+    #[command(long_about = status::LONG_ABOUT)]
+    Status(StatusArguments),
     /// Say everything that is wrong with scenario and study files, without running them
     ///
     /// Of a study, every combination is checked. Each fault comes with its file, line and column, and with what would be right. Exit status 2 if there is any.
@@ -191,6 +202,8 @@ pub fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Scenario(arguments) => scenario::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
+        Command::Merge(arguments) => merge::run(&arguments),
+        Command::Status(arguments) => status::run(&arguments),
         Command::Check {
             files,
             overrides,

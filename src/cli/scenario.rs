@@ -7,10 +7,12 @@ use clap::{Args, ValueEnum};
 
 use super::check::{self, Deny};
 use super::failure::Failure;
+use super::shard;
 use super::shown::{Finished, Format};
 use super::told::{Teller, options};
+use crate::experiment::Shard;
 use crate::export::Pictures;
-use crate::runs::{ScenarioRun, run_scenario};
+use crate::runs::{ScenarioRun, run_scenario, run_scenario_shard};
 use crate::scenario::{contents, examine, is_study, question};
 use crate::simulation::DriverKind;
 
@@ -20,7 +22,9 @@ Runs the trials of a scenario in parallel and reports what they show: completion
 and connectivity, each with its interval. Tables (Parquet), pictures (SVG), summary.json and manifest.json go to a folder.
 
 Finished trials are kept: after an interruption the same command goes on where it stopped, and the results are the same, \
-byte for byte, as those of a run without interruption. Results of another scenario are never overwritten without --force.";
+byte for byte, as those of a run without interruption. Results of another scenario are never overwritten without --force.
+
+Trials can be spread over processes and machines: --shard 2/4 runs the second of four parts, `desim merge` puts the parts together.";
 
 /// Arguments of `desim scenario`.
 #[derive(Debug, Args)]
@@ -33,7 +37,7 @@ pub struct ScenarioArguments {
     /// Seed of every random stream, instead of the scenario's
     #[arg(long, value_name = "S")]
     pub seed: Option<u64>,
-    /// Trials that run at a time [default: one for each processor]; results do not depend on it
+    /// Trials that run at a time [default: one for each processor that this process may use]; results do not depend on it
     #[arg(long, value_name = "J")]
     pub jobs: Option<NonZeroUsize>,
     /// Folder for the results [default: results/NAME, the scenario's name]
@@ -57,8 +61,11 @@ pub struct ScenarioArguments {
     /// Refuse what `desim check` warns of, for scripts: nothing is run or written
     #[arg(long, value_enum, value_name = "WHAT")]
     pub deny: Option<Deny>,
+    /// The shard to run, instead of all trials
+    #[arg(long, value_name = "I/N", value_parser = shard::shard, help = shard::HELP, long_help = shard::LONG_HELP)]
+    pub shard: Option<Shard>,
     /// Delete the results that are in the folder, and run again
-    #[arg(long)]
+    #[arg(long, conflicts_with = "shard")]
     pub force: bool,
 }
 
@@ -130,6 +137,11 @@ pub fn run(arguments: &ScenarioArguments) -> Result<(), Failure> {
     };
     let options = options(arguments.jobs, arguments.driver.into(), arguments.force)?;
     let mut teller = Teller::new(&dir, arguments.quiet);
+    if let Some(shard) = arguments.shard {
+        let end = run_scenario_shard(&run, shard, &dir, &options, |happening| teller.tell(happening))?;
+        let how = (arguments.quiet, arguments.format);
+        return shard::print(shard, &scenario.name, &dir, end, how);
+    }
     let results = run_scenario(&run, &dir, &options, |happening| teller.tell(happening))?;
     if arguments.quiet && arguments.format == Format::Text {
         return Ok(());

@@ -1,14 +1,14 @@
 //! Finished trials on disk, until all of an experiment's are there.
 
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use xxhash_rust::xxh3::Xxh3;
 
-use crate::metrics::{Lists, TrialRecord};
-use crate::spool::{Scratch, Section, Shape};
+use super::part_file;
+use crate::metrics::TrialRecord;
+use crate::spool::Scratch;
 use crate::text::shown;
 
 /// A trial and what it took.
@@ -20,15 +20,33 @@ pub struct FinishedTrial {
     pub record: TrialRecord,
 }
 
+/// What a finished trial is of: a hash of everything that its result depends on, but its number. Trials of another key are other trials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Key(#[serde(with = "hexadecimal")] pub u128);
+
+/// JSON has no numbers of 128 bits.
+mod hexadecimal {
+    use serde::{Deserialize, Deserializer, Serializer, de};
+
+    #[allow(clippy::trivially_copy_pass_by_ref)] // As serde calls it.
+    pub fn serialize<S: Serializer>(hash: &u128, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{hash:032x}"))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u128, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        u128::from_str_radix(&text, 16).map_err(de::Error::custom)
+    }
+}
+
 /// A folder with one file a finished trial.
 ///
-/// A file is a line of JSON whose numbers read back bit for bit, then the entries of the record's long lists, then a line with the XXH3-128 hash
-/// of both. It is written under another name and renamed: whatever kills the process, a file that is there is whole, and one that has changed
-/// since is noticed. The folder is locked while it is open, so that two processes never run the same experiment.
-#[derive(Debug)]
+/// A file is written under a name of its own and renamed: whatever kills the process, a file that is there is whole, and one that has changed
+/// since is noticed. Any number of processes may keep trials in one folder: what two of them have run is the same.
+#[derive(Clone, Debug)]
 pub struct Parts {
     dir: PathBuf,
-    _lock: File,
+    key: Key,
 }
 
 /// A folder of parts cannot be used.
@@ -58,22 +76,10 @@ pub enum PartsError {
 }
 
 impl Parts {
-    /// Opens the folder `dir`, made if need be, and locks it until the value is dropped.
-    ///
-    /// # Errors
-    /// If another process has it open, or it cannot be made or written.
-    pub fn open(dir: &Path) -> Result<Self, PartsError> {
-        fs::create_dir_all(dir).map_err(failed("create the folder", dir))?;
-        let path = dir.join("lock");
-        let lock = File::create(&path).map_err(failed("create", &path))?;
-        match lock.try_lock() {
-            Ok(()) => Ok(Self {
-                dir: dir.to_owned(),
-                _lock: lock,
-            }),
-            Err(fs::TryLockError::WouldBlock) => Err(PartsError::Busy(dir.to_owned())),
-            Err(fs::TryLockError::Error(source)) => Err(failed("lock", &path)(source)),
-        }
+    /// The folder `dir`, which need not exist, for trials of `key`.
+    #[must_use]
+    pub fn at(dir: PathBuf, key: Key) -> Self {
+        Self { dir, key }
     }
 
     /// The folder itself.
@@ -82,19 +88,36 @@ impl Parts {
         &self.dir
     }
 
-    /// Those of the first `trials` trials of an experiment with `seed` that are not here yet, in order. A file that
-    /// cannot be read counts as not here.
+    /// Those of `trials` that are not here yet, in order. A file that cannot be read, or is of something else, counts as not here.
     #[must_use]
-    pub fn missing(&self, trials: u32, seed: u64) -> Vec<u32> {
-        (0..trials)
-            .filter(|&trial| match self.load(trial) {
-                Ok(part) => part.record.seed != seed,
-                Err(error) => {
-                    tracing::debug!(trial, %error, "not finished");
-                    true
-                }
-            })
-            .collect()
+    pub fn missing(&self, trials: impl Iterator<Item = u32>) -> Vec<u32> {
+        let is_missing = |trial: &u32| match self.open(*trial) {
+            Ok(_) => false,
+            Err(error) => {
+                tracing::debug!(trial, %error, "not finished");
+                true
+            }
+        };
+        trials.filter(is_missing).collect()
+    }
+
+    /// The trials for which there is a file, whatever is in it, in order.
+    ///
+    /// # Errors
+    /// If the folder cannot be read. One that is not there has none.
+    pub fn there(&self) -> Result<Vec<u32>, PartsError> {
+        let mut numbers = Vec::new();
+        let entries = match fs::read_dir(&self.dir) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(numbers),
+            entries => entries.map_err(failed("read", &self.dir))?,
+        };
+        for entry in entries {
+            let name = entry.map_err(failed("read", &self.dir))?.file_name();
+            let number = name.to_str().and_then(|name| name.strip_suffix(ENDING)?.parse().ok());
+            numbers.extend(number.filter(|number| name == *file_name(*number)));
+        }
+        numbers.sort_unstable();
+        Ok(numbers)
     }
 
     /// Where trials that are under way keep what would fill the memory: in files without names, which leave no trace.
@@ -109,9 +132,7 @@ impl Parts {
     /// If the file system refuses.
     pub fn save(&self, part: &mut FinishedTrial) -> Result<(), PartsError> {
         let path = self.path(part.record.trial);
-        let unfinished = path.with_extension("writing");
-        write(&unfinished, part).map_err(failed("write", &unfinished))?;
-        fs::rename(&unfinished, &path).map_err(failed("write", &path))
+        replace(&self.dir, &path, |file| part_file::write(file, self.key, part)).map_err(failed("write", &path))
     }
 
     /// Reads a finished trial back.
@@ -119,130 +140,68 @@ impl Parts {
     /// # Errors
     /// If it is not there, or not what its name says.
     pub fn load(&self, trial: u32) -> Result<FinishedTrial, PartsError> {
+        let file = self.open(trial)?;
+        part_file::read(file).map_err(|error| self.damaged(trial, error.to_string()))
+    }
+
+    /// Opens the file of a trial, which is as it was written.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub(super) fn open(&self, trial: u32) -> Result<File, PartsError> {
         let path = self.path(trial);
-        let damaged = |reason: String| PartsError::Damaged {
-            path: path.clone(),
-            reason,
-        };
         if path.exists() && !path.is_file() {
-            return Err(damaged("it is no file with an end".to_owned()));
+            return Err(self.damaged(trial, "it is no file with an end".to_owned()));
         }
         let file = File::open(&path).map_err(failed("read", &path))?;
-        let part = read(file).map_err(|error| damaged(error.to_string()))?;
-        if part.record.trial == trial {
-            Ok(part)
-        } else {
-            Err(damaged(format!("it holds trial {}", part.record.trial)))
+        let label = part_file::verify(&file).map_err(|error| self.damaged(trial, error.to_string()))?;
+        if label.of != self.key {
+            let reason = "it is of another scenario, or of another version or program";
+            return Err(self.damaged(trial, reason.to_owned()));
+        }
+        if label.trial() != trial {
+            return Err(self.damaged(trial, format!("it holds trial {}", label.trial())));
+        }
+        Ok(file)
+    }
+
+    fn damaged(&self, trial: u32, reason: String) -> PartsError {
+        PartsError::Damaged {
+            path: self.path(trial),
+            reason,
         }
     }
 
     fn path(&self, trial: u32) -> PathBuf {
-        self.dir.join(format!("{trial:06}.trial"))
+        self.dir.join(file_name(trial))
     }
 }
 
-/// The first line of a file.
-#[derive(Serialize, Deserialize)]
-struct Head<P> {
-    /// The trial without its long lists.
-    part: P,
-    /// How long these are, in the order in which their entries follow.
-    lists: Vec<Shape>,
+const ENDING: &str = ".trial";
+
+fn file_name(trial: u32) -> String {
+    format!("{trial:06}{ENDING}")
 }
 
-fn write(path: &Path, part: &mut FinishedTrial) -> io::Result<()> {
-    let mut lists = Lists::default();
-    part.record.exchange(&mut lists);
-    let written = write_apart(path, part, &mut lists);
-    part.record.exchange(&mut lists);
-    written
+/// Writes a file whole or not at all: by `write`, in `dir` under a name that nobody else has, then moved to `path`. Others may do the same at
+/// the same time.
+///
+/// # Errors
+/// If the file system refuses.
+pub fn replace<T>(dir: &Path, path: &Path, write: impl FnOnce(&File) -> io::Result<T>) -> io::Result<T> {
+    let mut unfinished = tempfile::Builder::new();
+    unfinished.prefix(".").suffix(".writing");
+    // A temporary file is its owner's alone. This one is for whoever may read the folder.
+    #[cfg(unix)]
+    unfinished.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let unfinished = unfinished.tempfile_in(dir)?;
+    let written = write(unfinished.as_file())?;
+    unfinished.persist(path).map_err(|error| error.error)?;
+    Ok(written)
 }
 
-fn write_apart(path: &Path, part: &FinishedTrial, lists: &mut Lists) -> io::Result<()> {
-    let mut file = Hashing::new(BufWriter::new(File::create(path)?));
-    let lists = lists.all();
-    let head = Head {
-        part,
-        lists: lists.iter().map(|list| list.shape()).collect(),
-    };
-    serde_json::to_writer(&mut file, &head)?;
-    file.write_all(b"\n")?;
-    for list in lists {
-        list.write_to(&mut file)?;
-    }
-    let Hashing { mut inner, hash } = file;
-    inner.write_all(&hash_line(&hash))?;
-    inner.flush()
-}
-
-fn read(mut file: File) -> io::Result<FinishedTrial> {
-    let length = file.metadata()?.len();
-    let Some(end) = length.checked_sub(HASH_LINE) else {
-        return Err(io::Error::other("it has no hash"));
-    };
-    let mut whole = Hashing::new(io::sink());
-    io::copy(&mut (&mut file).take(end), &mut whole)?;
-    let mut kept = Vec::new();
-    file.read_to_end(&mut kept)?;
-    if kept != hash_line(&whole.hash) {
-        return Err(io::Error::other("it does not fit its hash"));
-    }
-    file.rewind()?;
-    let mut line = Vec::new();
-    BufReader::new(&file).read_until(b'\n', &mut line)?;
-    let Head {
-        mut part,
-        lists: shapes,
-    } = serde_json::from_slice::<Head<FinishedTrial>>(&line)?;
-    let mut lists = Lists::default();
-    let mut section = Section::of(file, line.len() as u64);
-    if shapes.len() != lists.all().len() {
-        return Err(io::Error::other("it holds other lists than a trial has"));
-    }
-    for (list, shape) in lists.all().into_iter().zip(shapes) {
-        list.restore(shape, section.clone())?;
-        section = section.after(shape.bytes());
-    }
-    part.record.exchange(&mut lists);
-    Ok(part)
-}
-
-/// Bytes of [`hash_line`].
-const HASH_LINE: u64 = 33;
-
-/// The last line of a file.
-fn hash_line(hash: &Xxh3) -> Vec<u8> {
-    format!("{:032x}\n", hash.digest128()).into_bytes()
-}
-
-/// Hashes what goes through it.
-struct Hashing<W> {
-    inner: W,
-    hash: Xxh3,
-}
-
-impl<W> Hashing<W> {
-    fn new(inner: W) -> Self {
-        Self {
-            inner,
-            hash: Xxh3::new(),
-        }
-    }
-}
-
-impl<W: Write> Write for Hashing<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.inner.write(bytes)?;
-        self.hash.update(&bytes[..written]);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.inner.flush()
-    }
-}
-
-fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> PartsError {
+/// Says what failed on which file.
+pub(super) fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> PartsError {
     let path = path.to_owned();
     move |source| PartsError::Io { action, path, source }
 }

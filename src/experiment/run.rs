@@ -9,6 +9,7 @@ use std::time::Instant;
 use tokio_util::sync::CancellationToken;
 
 use super::parts::{FinishedTrial, Parts, PartsError};
+use super::shard::Shard;
 use crate::metrics::TrialRecord;
 
 /// How a set of trials ended, when none of them failed.
@@ -36,13 +37,13 @@ pub enum ExperimentError<E: std::error::Error + 'static> {
     Parts(#[from] PartsError),
 }
 
-/// The trials of one scenario.
+/// The trials of one scenario, or those of them that a shard has.
 #[derive(Debug)]
 pub struct Experiment<'a> {
-    /// How many trials there are to be.
+    /// How many trials there are to be, in all shards together.
     pub trials: u32,
-    /// Seed of them all.
-    pub seed: u64,
+    /// Which of them are to be run.
+    pub shard: Shard,
     /// Where finished trials are kept.
     pub parts: &'a Parts,
 }
@@ -57,14 +58,26 @@ pub struct Pool<'a> {
 }
 
 impl Experiment<'_> {
-    /// How many trials are kept by now.
+    /// How many of its trials are kept by now.
     #[must_use]
     pub fn kept(&self) -> u32 {
-        self.trials - self.missing().len() as u32
+        self.len() - self.missing().len() as u32
+    }
+
+    /// How many trials it has.
+    #[must_use]
+    pub fn len(&self) -> u32 {
+        self.shard.trials(self.trials).len() as u32
+    }
+
+    /// Whether it has none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     fn missing(&self) -> Vec<u32> {
-        self.parts.missing(self.trials, self.seed)
+        self.parts.missing(self.shard.trials(self.trials))
     }
 }
 

@@ -10,10 +10,11 @@ use super::files::{MANIFEST, PAGE, PICTURES, REPLAY, SUMMARY, TRACE_TABLES, is_t
 use super::held::{FileEntry, document, held, measure, sealed, unseal};
 use super::manifest::Manifest;
 use super::place::{FolderError, Place, WriteError, failed, gone};
-use crate::experiment::Parts;
+use crate::experiment::{Claim, Parts, replace};
 use crate::metrics::Summary;
 
-const TRIALS: &str = ".trials";
+/// Where finished trials wait for the others, and files until they are whole.
+pub(super) const TRIALS: &str = ".trials";
 
 /// A folder that holds, or will hold, the results of one experiment.
 #[derive(Clone, Debug)]
@@ -112,13 +113,19 @@ impl Folder {
         document(self.path(), SUMMARY, files, &manifest.version)
     }
 
-    /// Puts a manifest in place. Like every file, it passes through [`trials`](Self::trials), which must be there.
+    /// The finished trials that `manifest` is, or is to be, made of.
+    #[must_use]
+    pub fn parts(&self, manifest: &Manifest) -> Parts {
+        Parts::at(self.trials(), manifest.key())
+    }
+
+    /// Puts a manifest in place. Like every file, it passes through [`trials`](Self::trials), which is made if need be. Several processes may
+    /// do so at once.
     ///
     /// # Errors
     /// If the file system refuses.
     pub fn declare(&self, manifest: &Manifest) -> Result<(), FolderError> {
-        self.stage(MANIFEST, &sealed(manifest))?;
-        self.place(MANIFEST)
+        write_whole(&self.trials(), &self.path().join(MANIFEST), &sealed(manifest))
     }
 
     /// Deletes what desim put here, and the folders that were not there before. Where the manifest cannot be trusted, all that
@@ -181,7 +188,7 @@ impl Folder {
     /// Deletes what an attempt that was cut short has left beside finished results, unless somebody is at work there. Where it
     /// cannot be deleted it does no harm.
     pub fn tidy(&self) {
-        if self.trials().exists() && Parts::open(&self.trials()).is_ok() {
+        if self.trials().exists() && Claim::lay(&self.trials()).is_ok() {
             let _ = self.drop_trials();
         }
     }
@@ -219,16 +226,22 @@ impl Folder {
     /// # Errors
     /// If somebody else is at work in the folder, or the file system refuses.
     pub fn keep_page(&self, manifest: &Manifest, page: &str) -> Result<Manifest, WriteError> {
-        let parts = Parts::open(&self.trials())?;
+        let claim = Claim::lay(&self.trials())?;
         self.stage(PAGE, page.as_bytes())?;
         let mut manifest = manifest.clone();
         manifest.files.insert(PAGE.to_owned(), FileEntry::of(page.as_bytes()));
         self.place(PAGE)?;
         self.declare(&manifest)?;
-        drop(parts);
+        drop(claim);
         self.drop_trials()?;
         Ok(manifest)
     }
+}
+
+/// Writes the file `path` whole or not at all, by way of the folder `staging`, which is made if need be. Others may do so at the same time.
+pub(super) fn write_whole(staging: &Path, path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
+    fs::create_dir_all(staging).map_err(failed("create the folder", staging))?;
+    replace(staging, path, |mut file| file.write_all(bytes)).map_err(failed("write", path))
 }
 
 /// Whether desim gives a file of results this name.

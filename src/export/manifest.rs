@@ -1,15 +1,19 @@
 //! `manifest.json`: what a results folder is the result of, and what it took.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
+use xxhash_rust::xxh3::xxh3_128;
 
-use super::files::PAGE;
+use super::files::{MANIFEST, PAGE};
 use super::held::{FileEntry, measure};
+use crate::experiment::Key;
 use crate::kinds;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, parse, to_ron};
+use crate::text::shown;
 
 /// What `manifest.json` holds. The only file of a results folder that depends on the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,6 +74,27 @@ impl Manifest {
             trials: Vec::new(),
             files: BTreeMap::new(),
         }
+    }
+
+    /// The scenario, of results in the folder `dir`. Somebody may have edited it: it must hold as any scenario file must.
+    ///
+    /// # Errors
+    /// In words, what is wrong with it.
+    pub fn read_scenario(&self, dir: &Path) -> Result<Scenario, String> {
+        let scenario: Scenario = serde_json::from_value(self.scenario.clone()).map_err(|error| error.to_string())?;
+        let place = shown(&dir.join(MANIFEST));
+        parse(&place, &to_ron(&scenario), &[]).map_err(|report| report.to_string())
+    }
+
+    /// What its trials are of: version, program and scenario, but for the number of trials, which no trial depends on.
+    #[must_use]
+    pub fn key(&self) -> Key {
+        let mut scenario = self.scenario.clone();
+        if let Some(fields) = scenario.as_object_mut() {
+            fields.shift_remove("trials");
+        }
+        let of = json!([self.version, self.program, scenario]);
+        Key(xxh3_128(of.to_string().as_bytes()))
     }
 
     /// The other files but for the page of charts, which follows from them.
@@ -143,6 +168,12 @@ pub struct Difference {
 }
 
 impl Difference {
+    /// Whether it is in the outermost field of this name.
+    #[must_use]
+    pub fn is_at(&self, name: &str) -> bool {
+        self.path.split('.').next() == Some(name)
+    }
+
     /// As a line for people.
     #[must_use]
     pub fn line(&self) -> String {
@@ -175,7 +206,6 @@ pub fn compare(path: &str, one: &Value, other: &Value, found: &mut Vec<Differenc
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     fn manifest(finished: bool, scenario: Value) -> Manifest {
         Manifest {

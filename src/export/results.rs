@@ -9,7 +9,7 @@ use super::manifest::{Difference, Manifest};
 use super::place::FolderError;
 use super::read::{self, NameLists};
 use crate::metrics::{Summary, TrialRecord};
-use crate::scenario::{Scenario, parse, to_ron};
+use crate::scenario::Scenario;
 use crate::text::shown;
 
 /// Finished results of one scenario, from one folder or several.
@@ -76,7 +76,9 @@ impl Results {
         let summary = folder.summary_in(&mut files, &manifest)?;
         let names = names(&summary);
         let records = read::records(&mut files, &names).map_err(|(file, wrong)| version(file, wrong))?;
-        let scenario = scenario(dir, &manifest).map_err(|reason| version(MANIFEST, reason))?;
+        let scenario = manifest
+            .read_scenario(dir)
+            .map_err(|reason| version(MANIFEST, reason))?;
         Ok(Self {
             sources: vec![(dir.to_owned(), manifest)],
             scenario,
@@ -160,11 +162,4 @@ fn names(summary: &Summary) -> NameLists {
         topics: bandwidth.by_topic.0.iter().map(|(name, _)| name.clone()).collect(),
         roles: bandwidth.by_role.0.iter().map(|(name, _)| name.clone()).collect(),
     }
-}
-
-/// The scenario in a manifest. Somebody may have edited it: it must hold as any scenario file must.
-fn scenario(dir: &Path, manifest: &Manifest) -> Result<Scenario, String> {
-    let scenario: Scenario = serde_json::from_value(manifest.scenario.clone()).map_err(|error| error.to_string())?;
-    let place = shown(&dir.join(MANIFEST));
-    parse(&place, &to_ron(&scenario), &[]).map_err(|report| report.to_string())
 }

@@ -1,19 +1,18 @@
 //! The results folder of a study: a results folder for each setting, and what compares them.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::Write;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::files::{MANIFEST, PAGE};
-use super::folder::{Contents, Folder, hold_page};
+use super::folder::{Contents, Folder, TRIALS, hold_page, write_whole};
 use super::held::{FileEntry, document, held, sealed, unseal};
 use super::manifest::{Difference, Manifest, compare, made_by, other_program};
 use super::picture;
-use super::place::{FolderError, Place, failed, json};
+use super::place::{FolderError, Place, failed, gone, json};
 use super::read;
 use crate::metrics::comparison::{Comparison, Trials};
 use crate::metrics::figures::Told;
@@ -23,8 +22,6 @@ const STUDY: &str = "study.json";
 const COMPARISON: &str = "comparison.json";
 const TABLE: &str = "comparison.parquet";
 const PARETO: &str = "pareto.svg";
-/// A file until it is whole.
-const UNFINISHED: &str = ".unfinished";
 
 /// What `study.json` holds: what the folder is the result of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,7 +90,16 @@ impl StudyManifest {
         made_by(&self.version, self.commit.as_deref())
     }
 
-    /// What keeps results of `self` from being results of `asked`, a line each.
+    /// The values of two plans that differ.
+    #[must_use]
+    pub fn plan_differences(&self, other: &Self) -> Vec<Difference> {
+        let mut found = Vec::new();
+        compare("", &self.plan, &other.plan, &mut found);
+        found
+    }
+
+    /// What keeps results of `self` from being results of `asked`, a line each. While nothing has been compared, there may be more trials or
+    /// fewer, and another width until which they are added: finished trials stay good.
     #[must_use]
     pub fn differences(&self, asked: &Self) -> Vec<String> {
         let mut lines = Vec::new();
@@ -101,9 +107,10 @@ impl StudyManifest {
             lines.push(format!("desim {} there, {} now", self.version, asked.version));
         }
         lines.extend(other_program(self.program.as_ref(), asked.program.as_ref()));
-        let mut found = Vec::new();
-        compare("", &self.plan, &asked.plan, &mut found);
-        lines.extend(found.iter().map(Difference::line));
+        let is_open = !self.finished && self.files.is_empty();
+        let counts = |field: &Difference| !is_open || !(field.is_at("trials") || field.is_at("until_width"));
+        let fields = self.plan_differences(asked).into_iter();
+        lines.extend(fields.filter(counts).map(|field| field.line()));
         if self.settings != asked.settings {
             let names = |settings: &[String]| settings.join(", ");
             lines.push(format!(
@@ -157,7 +164,7 @@ impl StudyFolder {
             return unseal(self.path(), STUDY).map(Some);
         }
         // What is not whole was left by an attempt that was killed before it said what it was.
-        match names.iter().find(|name| *name != UNFINISHED) {
+        match names.iter().find(|name| *name != TRIALS) {
             None => Ok(None),
             Some(found) => Err(FolderError::Foreign {
                 dir: self.path().to_owned(),
@@ -170,13 +177,26 @@ impl StudyFolder {
         }
     }
 
-    /// Says what the folder is the result of.
+    /// Where files are until they are whole, and where processes say how far they are. The trials are in the settings' folders.
+    #[must_use]
+    pub fn trials(&self) -> PathBuf {
+        self.path().join(TRIALS)
+    }
+
+    /// Says what the folder is the result of. Several processes may do so at once.
     ///
     /// # Errors
     /// If the file system refuses.
     pub fn declare(&self, manifest: &StudyManifest) -> Result<(), FolderError> {
-        fs::create_dir_all(self.path()).map_err(failed("create the folder", self.path()))?;
-        self.write(STUDY, &sealed(manifest)).map(drop)
+        self.write(STUDY, &sealed(manifest))?;
+        if manifest.finished {
+            self.drop_trials()?;
+        }
+        Ok(())
+    }
+
+    fn drop_trials(&self) -> Result<(), FolderError> {
+        gone(fs::remove_dir_all(self.trials())).map_err(failed("delete", &self.trials()))
     }
 
     /// The comparison, where `manifest` knows of one: all that compares the settings is as it was written.
@@ -279,8 +299,10 @@ impl StudyFolder {
 
     #[cfg(feature = "parquet")]
     fn write_table(&self, comparison: &Comparison, trials: &[Trials]) -> Result<Option<FileEntry>, FolderError> {
-        let (path, unfinished) = (self.path().join(TABLE), self.path().join(UNFINISHED));
-        let written = super::comparison_table::write(&unfinished, comparison, trials)
+        let path = self.path().join(TABLE);
+        let unfinished = self.trials().join(TABLE);
+        let written = fs::create_dir_all(self.trials())
+            .and_then(|()| super::comparison_table::write(&unfinished, comparison, trials))
             .and_then(|()| super::held::measure(&unfinished))
             .and_then(|entry| fs::rename(&unfinished, &path).map(|()| entry));
         written.map(Some).map_err(failed("write", &path))
@@ -310,16 +332,18 @@ impl StudyFolder {
             // Whatever else has come into it meanwhile keeps it.
             let _ = fs::remove_dir(folder.path());
         }
-        for name in [COMPARISON, TABLE, PARETO, PAGE, UNFINISHED, STUDY] {
+        for name in [COMPARISON, TABLE, PARETO, PAGE] {
             self.place.delete(name)?;
         }
+        self.drop_trials()?;
+        self.place.delete(STUDY)?;
         self.place.leave();
         Ok(())
     }
 
     /// Deletes what an attempt that was cut short has left beside a finished study. Where it cannot be deleted it does no harm.
     pub fn tidy(&self, manifest: &StudyManifest) {
-        let _ = self.place.delete(UNFINISHED);
+        let _ = self.drop_trials();
         for name in &manifest.settings {
             self.setting(name).tidy();
         }
@@ -327,11 +351,7 @@ impl StudyFolder {
 
     /// Writes a file whole or not at all.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<FileEntry, FolderError> {
-        let (path, unfinished) = (self.path().join(name), self.path().join(UNFINISHED));
-        let written = File::create(&unfinished).and_then(|mut file| file.write_all(bytes));
-        written
-            .and_then(|()| fs::rename(&unfinished, &path))
-            .map(|()| FileEntry::of(bytes))
-            .map_err(failed("write", &path))
+        write_whole(&self.trials(), &self.path().join(name), bytes)?;
+        Ok(FileEntry::of(bytes))
     }
 }

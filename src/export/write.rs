@@ -7,7 +7,7 @@ use super::names::Names;
 use super::place::{FolderError, WriteError, failed, json};
 use super::scene::Scene;
 use super::tables::Tables;
-use crate::experiment::{FinishedTrial, Parts, reach};
+use crate::experiment::{Claim, FinishedTrial, Kept, reach};
 use crate::metrics::summary::Trials;
 use crate::metrics::{Summary, TrialRecord};
 use crate::radio::Reach;
@@ -25,14 +25,15 @@ pub enum Pictures {
     All,
 }
 
-/// Writes the results of `scenario`, all of whose trials are in `parts`, to `folder`: one trial at a time, in order,
-/// every file whole before it is put in its place, the manifest last. Then the parts go.
+/// Writes the results of `scenario`, all of whose trials are `kept` there or elsewhere, to `folder`, to whose trials somebody has laid `claim`: one
+/// trial at a time, in order, every file whole before it is put in its place, the manifest last. Then the folder's own trials go.
 ///
 /// # Errors
-/// If a trial cannot be read or a file not be written; the parts then stay.
+/// If a trial cannot be read or a file not be written; the trials then stay.
 pub fn write(
     folder: &Folder,
-    parts: Parts,
+    claim: Claim,
+    kept: &Kept,
     scenario: &Scenario,
     pictures: Pictures,
 ) -> Result<(Summary, Manifest), WriteError> {
@@ -45,20 +46,20 @@ pub fn write(
         finished: true,
         ..declared
     };
-    let mut files: Vec<String> = Vec::new();
-    let mut tables = Tables::create(parts.dir(), names, scene.targets.len()).map_err(failed("write", parts.dir()))?;
+    let (mut files, staging) = (Vec::<String>::new(), folder.trials());
+    let mut tables = Tables::create(&staging, names, scene.targets.len()).map_err(failed("write", &staging))?;
     let figures = scenario.figures();
     let mut trials = Trials::new(&figures);
     for trial in 0..scenario.trials {
-        let part = parts.load(trial)?;
-        tables.append(&part.record).map_err(failed("write", parts.dir()))?;
+        let part = kept.load(trial)?;
+        tables.append(&part.record).map_err(failed("write", &staging))?;
         if pictures == Pictures::All || (pictures == Pictures::First && trial == 0) {
             files.extend(draw(folder, &scene, &part.record, &reach(scenario, trial))?);
         }
         manifest.trials.push(entry(&part));
         trials.add(part.record);
     }
-    let tables = tables.finish().map_err(failed("write", parts.dir()))?;
+    let tables = tables.finish().map_err(failed("write", &staging))?;
     files.extend(tables.into_iter().map(str::to_owned));
     let summary = trials.summary(&scenario.name, names.topics, names.roles);
     folder.stage(SUMMARY, &json(&summary))?;
@@ -70,7 +71,7 @@ pub fn write(
     }
     folder.sweep(&manifest)?;
     folder.declare(&manifest)?;
-    drop(parts);
+    drop(claim);
     folder.drop_trials()?;
     Ok((summary, manifest))
 }

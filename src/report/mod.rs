@@ -13,6 +13,7 @@ mod layout;
 mod missed;
 mod number;
 mod preflight;
+mod progress;
 #[cfg(feature = "command")]
 mod replay;
 mod spread;
@@ -29,6 +30,7 @@ pub use layout::message;
 pub use missed::Asked;
 pub use number::seconds;
 pub use preflight::preflight;
+pub use progress::{FailedTrial, ProcessProgress, Progress, SettingProgress};
 #[cfg(feature = "command")]
 pub use replay::{Film, ReplayInput, replay};
 pub use terminal::{Input, Speed, terminal};

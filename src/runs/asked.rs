@@ -1,5 +1,7 @@
 //! What is to be run.
 
+use serde::{Deserialize, Serialize};
+
 use crate::export::Pictures;
 use crate::scenario::{Plan, Scenario};
 
@@ -36,7 +38,7 @@ pub struct StudyRun<'a> {
 }
 
 /// Trials are added until intervals are narrow enough.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Until {
     /// How wide the interval of the first figure may be in every setting, in the figure's unit.
     pub width: f64,

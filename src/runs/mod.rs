@@ -37,15 +37,24 @@
 
 mod asked;
 mod error;
+mod merge;
 mod options;
+mod processors;
+mod runner;
 mod scenario;
 mod settings;
+mod shards;
+mod status;
 mod study;
 mod trials;
 
 pub use asked::{ScenarioRun, StudyRun, Until};
 pub use error::{Cause, Other, RunsError};
+pub use merge::{Lack, Merge, MergeError, Merged, MissingTrials, merge};
 pub use options::Options;
+pub use runner::{FailedTrial, Health, Runner, UnderWay, now_s};
 pub use scenario::{ScenarioResults, run_scenario};
+pub use shards::{FinishedShard, run_scenario_shard, run_study_shard};
+pub use status::status;
 pub use study::{StudyResults, run_study};
 pub use trials::Happening;

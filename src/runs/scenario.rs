@@ -5,8 +5,8 @@ use std::path::Path;
 use super::asked::ScenarioRun;
 use super::error::{Other, RunsError};
 use super::options::Options;
-use super::trials::{Happening, run_missing};
-use crate::experiment::{Ending, Experiment, Parts};
+use super::trials::{Happening, Run};
+use crate::experiment::{Claim, Ending, Experiment, Kept, Shard};
 use crate::export::{self, Contents, Folder, FolderError, Manifest};
 use crate::metrics::Summary;
 use crate::scenario::Scenario;
@@ -40,6 +40,14 @@ pub fn run_scenario(
     simulate(&folder, run, options, &mut tell)
 }
 
+/// What the folder of a scenario that has just begun says of itself.
+pub(super) fn manifest_of(run: &ScenarioRun) -> Manifest {
+    Manifest {
+        question: run.question.clone(),
+        ..Manifest::new(run.scenario)
+    }
+}
+
 /// The manifest of the results asked for, if they are there and finished. The folder is then ready for the others: it
 /// holds nothing, or finished trials of the same experiment.
 fn finished(folder: &Folder, scenario: &Scenario, replace: bool) -> Result<Option<Manifest>, RunsError> {
@@ -56,7 +64,7 @@ fn finished(folder: &Folder, scenario: &Scenario, replace: bool) -> Result<Optio
     };
     let Some(there) = there.filter(|_| !replace) else {
         // Opening the trials makes sure that nobody is running them.
-        drop(Parts::open(&folder.trials())?);
+        drop(Claim::lay(&folder.trials())?);
         folder.clear()?;
         return Ok(None);
     };
@@ -79,22 +87,27 @@ fn simulate(
     tell: &mut dyn FnMut(Happening),
 ) -> Result<ScenarioResults, RunsError> {
     let scenario = run.scenario;
-    let parts = Parts::open(&folder.trials())?;
-    folder.declare(&Manifest {
-        question: run.question.clone(),
-        ..Manifest::new(scenario)
-    })?;
+    let claim = Claim::lay(&folder.trials())?;
+    let manifest = manifest_of(run);
+    folder.declare(&manifest)?;
+    let parts = folder.parts(&manifest);
     let kept = || {
         let experiment = Experiment {
             trials: scenario.trials,
-            seed: scenario.seed,
+            shard: Shard::WHOLE,
             parts: &parts,
         };
         experiment.kept()
     };
-    let ending = run_missing(&[(scenario, &parts)], kept(), options, |_, _| (), tell);
+    let missing = Run {
+        scenarios: &[(scenario, &parts)],
+        shard: Shard::WHOLE,
+        kept: kept(),
+        signs: parts.dir(),
+    };
+    let ending = missing.missing(options, |_, _| (), tell);
     if let Ok(Ending::Finished) = ending {
-        let (summary, manifest) = export::write(folder, parts, scenario, run.pictures)?;
+        let (summary, manifest) = export::write(folder, claim, &Kept::in_one(parts), scenario, run.pictures)?;
         return Ok(ScenarioResults { summary, manifest });
     }
     // Finished trials stay, and if there are none, nothing does.

@@ -1,53 +1,54 @@
-//! The settings of a study being run: their folders, their trials in one pool, and what these tell.
+//! The settings of a study: their folders, their trials, what these tell, and what is written of them.
 
 use std::collections::BTreeMap;
 
 use super::asked::{StudyRun, Until};
 use super::error::{Other, RunsError};
-use super::options::Options;
-use super::trials::{Happening, run_missing};
-use crate::experiment::{Ending, FinishedTrial, Parts};
+use crate::experiment::{Claim, Kept, Parts};
 use crate::export::{self, Contents, Folder, Manifest, Pictures, StudyFolder, StudyManifest};
 use crate::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials, widest};
 use crate::metrics::figures::{Figure, Registry, Sample, pool};
 use crate::report;
 use crate::scenario::{Plan, Scenario, Setting};
 
-/// The settings of a study, ready to run.
+/// The settings of a study, ready to be run or put together.
 pub(super) struct Settings<'a> {
-    study: &'a StudyFolder,
+    pub study: &'a StudyFolder,
     plan: &'a Plan,
-    until: Option<Until>,
-    options: &'a Options,
-    cells: Vec<Cell<'a>>,
+    pub until: Option<Until>,
+    pub cells: Vec<Cell<'a>>,
     /// What the figures are that all settings have.
     figures: Vec<Figure>,
     /// The comparison, if an attempt that was cut short has come that far.
     compared: Option<Comparison>,
 }
 
-/// A setting that is run.
-struct Cell<'a> {
-    setting: &'a Setting,
-    scenario: Scenario,
-    folder: Folder,
+/// A setting.
+pub(super) struct Cell<'a> {
+    pub setting: &'a Setting,
+    pub scenario: Scenario,
+    pub folder: Folder,
     /// Its trials; `None` once its results have been written.
-    parts: Option<Parts>,
+    pub trials: Option<OwnTrials>,
     /// What each of its trials tells of each figure.
-    told: BTreeMap<u32, Vec<Sample>>,
-    registry: Registry,
+    pub told: BTreeMap<u32, Vec<Sample>>,
+    pub registry: Registry,
     /// Where each figure common to all settings stands among its own.
     places: Vec<usize>,
 }
 
+/// The trials of a setting whose results have not been written yet.
+pub(super) struct OwnTrials {
+    claim: Claim,
+    /// In its own folder.
+    pub parts: Parts,
+    /// Wherever they are.
+    kept: Kept,
+}
+
 impl<'a> Settings<'a> {
     /// Makes sure that each setting's folder holds nothing, or trials of that very setting. Writes nothing yet.
-    pub fn open(
-        study: &'a StudyFolder,
-        run: &StudyRun<'a>,
-        options: &'a Options,
-        manifest: &StudyManifest,
-    ) -> Result<Self, RunsError> {
+    pub fn open(study: &'a StudyFolder, run: &StudyRun<'a>, manifest: &StudyManifest) -> Result<Self, RunsError> {
         let plan = run.plan;
         let registries: Vec<Registry> = plan.settings.iter().map(|setting| setting.scenario.figures()).collect();
         let figures = common(&registries);
@@ -80,7 +81,7 @@ impl<'a> Settings<'a> {
                 setting,
                 scenario,
                 folder,
-                parts: None,
+                trials: None,
                 told: BTreeMap::new(),
                 places: places.collect(),
                 registry,
@@ -90,39 +91,25 @@ impl<'a> Settings<'a> {
             study,
             plan,
             until: run.until,
-            options,
             cells,
             figures,
             compared,
         })
     }
 
-    /// Runs the trials that are missing, compares, and writes everything.
-    pub fn compare(
-        mut self,
-        mut manifest: StudyManifest,
-        tell: &mut dyn FnMut(Happening),
-    ) -> Result<Comparison, RunsError> {
-        self.study.declare(&manifest)?;
-        self.claim(&mut manifest)?;
-        let comparison = match self.compared.take() {
-            Some(comparison) => comparison,
-            None => self.simulate(&mut manifest, tell)?,
-        };
-        for cell in &mut self.cells {
-            if let Some(parts) = cell.parts.take() {
-                let (_, results) = export::write(&cell.folder, parts, &cell.scenario, Pictures::First)?;
-                manifest.add(&cell.setting.name, &results);
-            }
-        }
-        manifest.finished = true;
-        self.study.declare(&manifest)?;
-        Ok(comparison)
+    /// The comparison, if an attempt that was cut short has come that far.
+    pub fn compared(&mut self) -> Option<Comparison> {
+        self.compared.take()
     }
 
-    /// Opens the trials of every setting whose results have not been written yet; those of the others go into `manifest`.
-    fn claim(&mut self, manifest: &mut StudyManifest) -> Result<(), RunsError> {
-        for cell in &mut self.cells {
+    /// Claims the trials of every setting whose results have not been written yet, which are `kept` in the setting's folder or elsewhere. The
+    /// results of the others go into `manifest`.
+    pub fn claim(
+        &mut self,
+        manifest: &mut StudyManifest,
+        kept: impl Fn(usize, &Parts) -> Kept,
+    ) -> Result<(), RunsError> {
+        for (place, cell) in self.cells.iter_mut().enumerate() {
             if let Contents::Results(there) = cell.folder.contents()?
                 && there.finished
             {
@@ -131,35 +118,22 @@ impl<'a> Settings<'a> {
                 manifest.add(&cell.setting.name, &there);
                 continue;
             }
-            cell.parts = Some(Parts::open(&cell.folder.trials())?);
-            cell.folder.declare(&Manifest::new(&cell.scenario))?;
+            let asked = Manifest::new(&cell.scenario);
+            let claim = Claim::lay(&cell.folder.trials())?;
+            cell.folder.declare(&asked)?;
+            let parts = cell.folder.parts(&asked);
+            let kept = kept(place, &parts);
+            cell.trials = Some(OwnTrials { claim, parts, kept });
         }
         Ok(())
     }
 
-    fn simulate(
+    /// Compares what the trials tell, all of which are there, and writes it.
+    pub fn conclude(
         &mut self,
         manifest: &mut StudyManifest,
-        tell: &mut dyn FnMut(Happening),
+        stopping: Option<Stopping>,
     ) -> Result<Comparison, RunsError> {
-        let batch: Vec<u32> = self.cells.iter().map(|cell| cell.scenario.trials).collect();
-        let stopping = loop {
-            self.batch(manifest, tell)?;
-            let Some(until) = self.until else {
-                break None;
-            };
-            let stopping = self.stopping(until);
-            if stopping.reached || stopping.trials >= stopping.cap {
-                break Some(stopping);
-            }
-            for (cell, batch) in self.cells.iter_mut().zip(&batch) {
-                cell.scenario.trials = cell
-                    .scenario
-                    .trials
-                    .saturating_add(*batch)
-                    .min(stopping.cap.max(*batch));
-            }
-        };
         let trials = self.trials();
         let mut comparison = Comparison::of(&self.design(), &trials, stopping);
         report::describe(&mut comparison);
@@ -167,66 +141,35 @@ impl<'a> Settings<'a> {
         Ok(comparison)
     }
 
-    /// Reads what the kept trials tell that is not known yet.
-    fn recall(&mut self) {
+    /// Writes the results of every setting, and says that the study is finished.
+    pub fn finish(&mut self, manifest: &mut StudyManifest) -> Result<(), RunsError> {
         for cell in &mut self.cells {
-            let Some(parts) = &cell.parts else { continue };
+            cell.told.clear();
+            if let Some(OwnTrials { claim, kept, .. }) = cell.trials.take() {
+                // There may be more of them by now than were asked for at first.
+                cell.folder.declare(&Manifest::new(&cell.scenario))?;
+                let (_, results) = export::write(&cell.folder, claim, &kept, &cell.scenario, Pictures::First)?;
+                manifest.add(&cell.setting.name, &results);
+            }
+        }
+        manifest.finished = true;
+        Ok(self.study.declare(manifest)?)
+    }
+
+    /// Reads what the trials tell that are kept, for each setting, and not known yet.
+    pub fn recall(&mut self, kept: &[Kept]) {
+        for (cell, kept) in self.cells.iter_mut().zip(kept) {
             let unknown = (0..cell.scenario.trials).filter(|trial| !cell.told.contains_key(trial));
-            let kept = unknown.filter_map(|trial| parts.load(trial).ok());
-            let own = kept.filter(|part| part.record.seed == cell.scenario.seed);
-            let read: Vec<_> = own
+            let kept = unknown.filter_map(|trial| kept.load(trial).ok());
+            let read: Vec<_> = kept
                 .map(|part| (part.record.trial, cell.registry.read(&part.record)))
                 .collect();
             cell.told.extend(read);
         }
     }
 
-    /// Runs the trials that are missing, of all settings in one pool.
-    fn batch(&mut self, manifest: &StudyManifest, tell: &mut dyn FnMut(Happening)) -> Result<(), RunsError> {
-        self.recall();
-        let kept: usize = self.cells.iter().map(|cell| cell.told.len()).sum();
-        let mut told: Vec<(usize, u32, Vec<Sample>)> = Vec::new();
-        let ending = {
-            let run: Vec<(&Cell, &Parts)> = self
-                .cells
-                .iter()
-                .filter_map(|cell| Some((cell, cell.parts.as_ref()?)))
-                .collect();
-            let trials: Vec<(&Scenario, &Parts)> = run.iter().map(|(cell, parts)| (&cell.scenario, *parts)).collect();
-            let finished = |place: usize, part: &FinishedTrial| {
-                told.push((place, part.record.trial, run[place].0.registry.read(&part.record)));
-            };
-            run_missing(&trials, kept as u32, self.options, finished, tell)
-        };
-        for (cell, trial, samples) in told {
-            self.cells[cell].told.insert(trial, samples);
-        }
-        if let Ok(Ending::Finished) = ending {
-            return Ok(());
-        }
-        let interrupted = self.leave(manifest)?;
-        ending?;
-        Err(interrupted)
-    }
-
-    /// Leaves an unfinished study: finished trials stay, and if there are none, nothing does. Answers how many there are.
-    fn leave(&mut self, manifest: &StudyManifest) -> Result<RunsError, RunsError> {
-        let kept: usize = self.cells.iter().map(|cell| cell.told.len()).sum();
-        for cell in &mut self.cells {
-            cell.parts = None;
-        }
-        if kept == 0 {
-            self.study.clear(&manifest.settings)?;
-        }
-        Ok(RunsError::Interrupted {
-            kept,
-            trials: self.cells.iter().map(|cell| cell.scenario.trials).sum(),
-            dir: self.study.path().to_owned(),
-        })
-    }
-
     /// Whether the intervals are narrow enough by now.
-    fn stopping(&self, Until { width, most_trials }: Until) -> Stopping {
+    pub fn stopping(&self, Until { width, most_trials }: Until) -> Stopping {
         let design = self.design();
         let figure = design.compared.first().copied().unwrap_or(0);
         let widest = widest(&self.figures[figure], &self.trials(), figure);

@@ -4,14 +4,16 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::asked::{StudyRun, Until};
+use super::asked::StudyRun;
 use super::error::{Other, RunsError};
 use super::options::Options;
-use super::settings::Settings;
-use super::trials::Happening;
-use crate::experiment::Parts;
+use super::settings::{Cell, Settings};
+use super::trials::{Happening, Run};
+use crate::experiment::{Claim, Ending, FinishedTrial, Kept, Parts, Shard};
 use crate::export::{FolderError, StudyFolder, StudyManifest};
-use crate::metrics::comparison::Comparison;
+use crate::metrics::comparison::{Comparison, Stopping};
+use crate::metrics::figures::Sample;
+use crate::scenario::Scenario;
 
 /// Finished results of a study.
 #[derive(Clone, Debug)]
@@ -34,37 +36,46 @@ pub fn run_study(
     mut tell: impl FnMut(Happening),
 ) -> Result<StudyResults, RunsError> {
     let folder = StudyFolder::new(dir.to_owned());
+    let mut manifest = manifest_of(run);
+    let comparison = if let Some(comparison) = finished(&folder, &mut manifest, options.replace)? {
+        tell(Happening::There);
+        comparison
+    } else {
+        let settings = Settings::open(&folder, run, &manifest)?;
+        Running {
+            settings,
+            options,
+            manifest,
+        }
+        .compare(&mut tell)?
+    };
+    Ok(StudyResults { comparison, folder })
+}
+
+/// What the folder of a study that has just begun says of itself.
+pub(super) fn manifest_of(run: &StudyRun) -> StudyManifest {
     let names = run.plan.settings.iter().map(|setting| setting.name.clone()).collect();
     let settings = run.plan.settings.iter();
     let program = settings
         .map(|setting| &setting.scenario)
         .find_map(crate::export::program);
-    let mut manifest = StudyManifest::new(described(run), names, program);
-    let comparison = if let Some(comparison) = finished(&folder, &mut manifest, options.replace)? {
-        tell(Happening::There);
-        comparison
-    } else {
-        Settings::open(&folder, run, options, &manifest)?.compare(manifest, &mut tell)?
-    };
-    Ok(StudyResults { comparison, folder })
+    StudyManifest::new(described(run), names, program)
 }
 
 /// What the results depend on, beside the settings' scenarios.
 fn described(run: &StudyRun) -> serde_json::Value {
     let plan = run.plan;
-    let until_width = run
-        .until
-        .map(|Until { width, most_trials }| json!({"width": width, "most_trials": most_trials}));
     json!({
         "name": plan.name,
         "question": plan.question,
         "factors": plan.factors,
+        "levels": plan.settings.iter().map(|setting| &setting.levels).collect::<Vec<_>>(),
         "trials": plan.settings.iter().map(|setting| setting.scenario.trials).collect::<Vec<_>>(),
         "figures": plan.figures,
         "reference": plan.reference,
         "relevant": plan.relevant,
         "pareto": plan.pareto,
-        "until_width": until_width,
+        "until_width": run.until,
     })
 }
 
@@ -83,7 +94,7 @@ fn finished(folder: &StudyFolder, asked: &mut StudyManifest, replace: bool) -> R
             // Opening the trials makes sure that nobody is running them.
             let trials = folder.setting(name).trials();
             if trials.exists() {
-                drop(Parts::open(&trials)?);
+                drop(Claim::lay(&trials)?);
             }
         }
         folder.clear(&there.settings)?;
@@ -105,4 +116,102 @@ fn finished(folder: &StudyFolder, asked: &mut StudyManifest, replace: bool) -> R
     }
     asked.files = there.files;
     Ok(None)
+}
+
+/// A study that is being run.
+struct Running<'a> {
+    settings: Settings<'a>,
+    options: &'a Options,
+    manifest: StudyManifest,
+}
+
+impl Running<'_> {
+    /// Runs the trials that are missing, compares, and writes everything.
+    fn compare(mut self, tell: &mut dyn FnMut(Happening)) -> Result<Comparison, RunsError> {
+        self.settings.study.declare(&self.manifest)?;
+        self.settings
+            .claim(&mut self.manifest, |_, parts| Kept::in_one(parts.clone()))?;
+        let comparison = match self.settings.compared() {
+            Some(comparison) => comparison,
+            None => {
+                let stopping = self.simulate(tell)?;
+                self.settings.conclude(&mut self.manifest, stopping)?
+            }
+        };
+        self.settings.finish(&mut self.manifest)?;
+        Ok(comparison)
+    }
+
+    /// Runs trials until there are as many as were asked for, or the intervals are narrow enough.
+    fn simulate(&mut self, tell: &mut dyn FnMut(Happening)) -> Result<Option<Stopping>, RunsError> {
+        let batch: Vec<u32> = self.settings.cells.iter().map(|cell| cell.scenario.trials).collect();
+        loop {
+            self.batch(tell)?;
+            let Some(until) = self.settings.until else {
+                return Ok(None);
+            };
+            let stopping = self.settings.stopping(until);
+            if stopping.reached || stopping.trials >= stopping.cap {
+                return Ok(Some(stopping));
+            }
+            for (cell, batch) in self.settings.cells.iter_mut().zip(&batch) {
+                let more = cell.scenario.trials.saturating_add(*batch);
+                cell.scenario.trials = more.min(stopping.cap.max(*batch));
+            }
+        }
+    }
+
+    /// Runs the trials that are missing, of all settings in one pool.
+    fn batch(&mut self, tell: &mut dyn FnMut(Happening)) -> Result<(), RunsError> {
+        let parts = |cell: &Cell| Some(Kept::in_one(cell.trials.as_ref()?.parts.clone()));
+        let kept: Option<Vec<Kept>> = self.settings.cells.iter().map(parts).collect();
+        self.settings.recall(&kept.unwrap_or_default());
+        let kept: usize = self.settings.cells.iter().map(|cell| cell.told.len()).sum();
+        let mut told: Vec<(usize, u32, Vec<Sample>)> = Vec::new();
+        let ending = {
+            let cells = self.settings.cells.iter().enumerate();
+            let run: Vec<(usize, &Cell, &Parts)> = cells
+                .filter_map(|(place, cell)| Some((place, cell, &cell.trials.as_ref()?.parts)))
+                .collect();
+            let trials: Vec<(&Scenario, &Parts)> =
+                run.iter().map(|(_, cell, parts)| (&cell.scenario, *parts)).collect();
+            let finished = |place: usize, part: &FinishedTrial| {
+                let (place, cell, _) = run[place];
+                told.push((place, part.record.trial, cell.registry.read(&part.record)));
+            };
+            let run = Run {
+                scenarios: &trials,
+                shard: Shard::WHOLE,
+                kept: kept as u32,
+                signs: &self.settings.study.trials(),
+            };
+            run.missing(self.options, finished, tell)
+        };
+        for (cell, trial, samples) in told {
+            self.settings.cells[cell].told.insert(trial, samples);
+        }
+        if let Ok(Ending::Finished) = ending {
+            return Ok(());
+        }
+        let interrupted = self.leave()?;
+        ending?;
+        Err(interrupted)
+    }
+
+    /// Leaves an unfinished study: finished trials stay, and if there are none, nothing does. Answers how many there are.
+    fn leave(&mut self) -> Result<RunsError, RunsError> {
+        let Settings { study, cells, .. } = &mut self.settings;
+        let kept: usize = cells.iter().map(|cell| cell.told.len()).sum();
+        for cell in cells.iter_mut() {
+            cell.trials = None;
+        }
+        if kept == 0 {
+            study.clear(&self.manifest.settings)?;
+        }
+        Ok(RunsError::Interrupted {
+            kept,
+            trials: cells.iter().map(|cell| cell.scenario.trials).sum(),
+            dir: study.path().to_owned(),
+        })
+    }
 }

@@ -1,11 +1,12 @@
 //! The trials that are missing, of one scenario or many.
 
-use std::num::NonZeroUsize;
-use std::thread;
+use std::path::Path;
 
 use super::error::RunsError;
 use super::options::Options;
-use crate::experiment::{Ending, Experiment, FinishedTrial, Parts, Pool, run_trial_in};
+use super::processors::processors;
+use super::runner::Telling;
+use crate::experiment::{Ending, Experiment, FinishedTrial, Parts, Pool, Shard, run_trial_in};
 use crate::scenario::Scenario;
 
 /// What whoever runs something is told.
@@ -26,48 +27,61 @@ pub enum Happening<'a> {
     End,
 }
 
-/// Runs the trials of `scenarios` that are not kept yet, all in one pool, and tells `finished` of each, with the place of its
-/// scenario. `kept` says how many are.
-///
-/// # Errors
-/// The first error of a trial.
-pub(super) fn run_missing(
-    scenarios: &[(&Scenario, &Parts)],
-    kept: u32,
-    options: &Options,
-    mut finished: impl FnMut(usize, &FinishedTrial),
-    tell: &mut dyn FnMut(Happening),
-) -> Result<Ending, RunsError> {
-    let experiments: Vec<Experiment> = scenarios
-        .iter()
-        .map(|(scenario, parts)| Experiment {
-            trials: scenario.trials,
-            seed: scenario.seed,
-            parts,
-        })
-        .collect();
-    // A trial that fails stops the others, and nobody else's.
-    let stop = options.stop.child_token();
-    let pool = Pool {
-        jobs: threads(options.jobs),
-        stop: &stop,
-    };
-    let run = |place: usize, trial| {
-        let (scenario, parts) = scenarios[place];
-        run_trial_in(&parts.scratch(), scenario, trial, options.driver, &stop)
-    };
-    let trials = experiments.iter().map(|experiment| experiment.trials).sum();
-    tell(Happening::Begin { kept, trials });
-    let ending = pool.run(&experiments, run, |place, part| {
-        tell(Happening::Trial(part));
-        finished(place, part);
-    });
-    tell(Happening::End);
-    Ok(ending?)
+/// Trials to be run, of one scenario or many.
+pub(super) struct Run<'a> {
+    /// The scenarios, and where their trials are kept.
+    pub scenarios: &'a [(&'a Scenario, &'a Parts)],
+    /// Which trials are to be run.
+    pub shard: Shard,
+    /// How many of these are kept from before.
+    pub kept: u32,
+    /// The folder in which this process says how far it is.
+    pub signs: &'a Path,
 }
 
-/// As many threads as asked for, or one for each processor.
-fn threads(asked: Option<NonZeroUsize>) -> NonZeroUsize {
-    let processors = || thread::available_parallelism().ok();
-    asked.or_else(processors).unwrap_or(NonZeroUsize::MIN)
+impl Run<'_> {
+    /// Runs the trials that are not kept yet, all in one pool, and tells `finished` of each, with the place of its scenario.
+    ///
+    /// # Errors
+    /// The first error of a trial.
+    pub fn missing(
+        &self,
+        options: &Options,
+        mut finished: impl FnMut(usize, &FinishedTrial),
+        tell: &mut dyn FnMut(Happening),
+    ) -> Result<Ending, RunsError> {
+        let experiments: Vec<Experiment> = self
+            .scenarios
+            .iter()
+            .map(|(scenario, parts)| Experiment {
+                trials: scenario.trials,
+                shard: self.shard,
+                parts,
+            })
+            .collect();
+        // A trial that fails stops the others, and nobody else's.
+        let stop = options.stop.child_token();
+        let jobs = options.jobs.unwrap_or_else(processors);
+        let pool = Pool { jobs, stop: &stop };
+        let trials = experiments.iter().map(Experiment::len).sum::<u32>();
+        let telling = Telling::begin(self.signs, self.shard, jobs.get(), trials - self.kept.min(trials));
+        let run = |place: usize, trial| {
+            let (scenario, parts) = self.scenarios[place];
+            telling.starts(place, trial);
+            let ran = run_trial_in(&parts.scratch(), scenario, trial, options.driver, &stop);
+            let failed = ran.as_ref().err().filter(|_| !stop.is_cancelled());
+            telling.stops(place, trial, failed.map(ToString::to_string));
+            ran
+        };
+        tell(Happening::Begin {
+            kept: self.kept,
+            trials,
+        });
+        let ending = pool.run(&experiments, run, |place, part| {
+            tell(Happening::Trial(part));
+            finished(place, part);
+        });
+        tell(Happening::End);
+        Ok(ending?)
+    }
 }
