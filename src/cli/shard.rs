@@ -41,9 +41,7 @@ pub fn shard(text: &str) -> Result<Shard, String> {
 
 fn shard_by(text: &str, variable: impl Fn(&str) -> Option<String>) -> Result<Shard, String> {
     let Some(of) = text.strip_prefix("auto/") else {
-        return text
-            .parse()
-            .map_err(|error| format!("{error}; or auto/N, where a scheduler says which"));
+        return text.parse();
     };
     let of = of
         .parse()
@@ -105,7 +103,10 @@ pub fn print(
             let dir = shown(dir);
             let of = if trials == 1 { "trial" } else { "trials" };
             writeln!(out, "shard {shard} of {name}: {trials} {of} in {dir}")?;
-            writeln!(out, "once all shards are done, `desim merge` puts their folders together")?;
+            writeln!(
+                out,
+                "once all shards are done, `desim merge` puts their folders together"
+            )?;
         }
     }
     Ok(out.flush()?)

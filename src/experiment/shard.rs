@@ -82,7 +82,8 @@ impl FromStr for Shard {
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('/');
         let numbers = numbers.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
-        let (number, of) = numbers.ok_or("expected I/N, such as 2/4 for the second of four")?;
+        let (number, of) = numbers
+            .ok_or("expected I/N, such as 2/4 for the second of four, or auto/N where a scheduler says which")?;
         Self::new(number, of)
     }
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::grid::{Column, Grid};
 use super::layout::Page;
-use super::number::{count, seconds};
+use super::number::count;
 use crate::text::Style;
 
 /// How far the trials are.
@@ -80,7 +80,7 @@ fn roughly(duration_s: f64) -> String {
     const UNITS: [(f64, &str); 3] = [(86_400.0, "days"), (3600.0, "hours"), (60.0, "minutes")];
     match UNITS.into_iter().find(|(unit, _)| duration_s >= 2.0 * unit) {
         Some((unit, name)) => format!("{:.0} {name}", duration_s / unit),
-        None => seconds(duration_s.round()),
+        None => format!("{duration_s:.0} s"),
     }
 }
 
@@ -172,7 +172,7 @@ impl Progress {
                 count(process.finished.into()),
                 count(process.left.into()),
                 under_way,
-                format!("{} ago", seconds(process.heard_s.round())),
+                format!("{} ago", roughly(process.heard_s)),
             ]);
         }
         grid

@@ -7,5 +7,6 @@ mod harm;
 #[cfg(feature = "parquet")]
 mod results_folder;
 mod runs;
+mod shards;
 mod studies;
 mod validate;

@@ -7,7 +7,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 
 use desim::engine::{ActorId, SimTime, Span};
-use desim::experiment::{Ending, Experiment, ExperimentError, Parts, Pool};
+use desim::experiment::{Claim, Ending, Experiment, ExperimentError, Kept, Pool, Shard};
 use desim::export::{Folder, Manifest, Pictures, write};
 use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
@@ -352,20 +352,20 @@ pub fn run(
     run: impl Fn(u32) -> Result<TrialRecord, GivenUp> + Sync,
 ) -> Result<Ending, ExperimentError<GivenUp>> {
     let folder = Folder::new(dir.to_owned());
-    let parts = Parts::open(&folder.trials())?;
-    folder
-        .declare(&Manifest::new(scenario))
-        .expect("the folder can be written");
+    let claim = Claim::lay(&folder.trials())?;
+    let manifest = Manifest::new(scenario);
+    folder.declare(&manifest).expect("the folder can be written");
+    let parts = folder.parts(&manifest);
     let jobs = NonZeroUsize::new(jobs).expect("at least one thread");
     let experiment = Experiment {
         trials: scenario.trials,
-        seed: scenario.seed,
+        shard: Shard::WHOLE,
         parts: &parts,
     };
     let pool = Pool { jobs, stop };
     let ending = pool.run(&[experiment], |_, trial| run(trial), |_, _| ())?;
     if ending == Ending::Finished {
-        write(&folder, parts, scenario, Pictures::First).expect("the results can be written");
+        write(&folder, claim, &Kept::in_one(parts), scenario, Pictures::First).expect("the results can be written");
     }
     Ok(ending)
 }

@@ -5,8 +5,9 @@ use std::fs;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use desim::experiment::{Ending, FinishedTrial, Parts, PartsError};
+use desim::experiment::{Claim, Ending, FinishedTrial, Key, Parts, PartsError};
 use desim::export::{Contents, Folder, FolderError, Manifest, Results, sealed};
+use desim::scenario::Scenario;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::{Field, Row};
 use tempfile::tempdir;
@@ -127,16 +128,21 @@ fn a_trial_whose_file_is_damaged_runs_again() {
     let dir = tempdir().unwrap();
     interrupted(dir.path());
     fs::write(dir.path().join(".trials/000001.trial"), "{\"wall_s\":").unwrap();
-    let parts = Parts::open(&dir.path().join(".trials")).unwrap();
-    assert_eq!(parts.missing(4, 1), [1, 3]);
+    let parts = Folder::new(dir.path().to_owned()).parts(&Manifest::new(&scenario(TRIALS)));
+    assert_eq!(parts.missing(0..4), [1, 3]);
     assert!(matches!(parts.load(1), Err(PartsError::Damaged { .. })));
-    assert_eq!(parts.missing(2, 99), [0, 1], "trials of another seed are other trials");
+    let other = Scenario {
+        seed: 99,
+        ..scenario(TRIALS)
+    };
+    let other = Folder::new(dir.path().to_owned()).parts(&Manifest::new(&other));
+    assert_eq!(other.missing(0..2), [0, 1], "trials of another seed are other trials");
 }
 
 #[test]
 fn a_kept_trial_comes_back_bit_for_bit() {
     let dir = tempdir().unwrap();
-    let parts = Parts::open(dir.path()).unwrap();
+    let parts = Parts::at(dir.path().to_owned(), Key(1 << 127 | 5));
     let mut record = record(2);
     record.seed = u64::MAX;
     for (place, lambda2) in [0.1 + 0.2, f64::MIN_POSITIVE / 8.0, f64::MIN_POSITIVE.next_down()]
@@ -163,10 +169,10 @@ fn a_kept_trial_comes_back_bit_for_bit() {
 #[test]
 fn two_processes_never_run_the_same_experiment() {
     let dir = tempdir().unwrap();
-    let first = Parts::open(dir.path()).unwrap();
-    assert!(matches!(Parts::open(dir.path()), Err(PartsError::Busy(_))));
+    let first = Claim::lay(dir.path()).unwrap();
+    assert!(matches!(Claim::lay(dir.path()), Err(PartsError::Busy(_))));
     drop(first);
-    assert!(Parts::open(dir.path()).is_ok());
+    assert!(Claim::lay(dir.path()).is_ok());
 }
 
 #[test]

@@ -87,13 +87,14 @@ fn what_a_killed_attempt_left_in_a_study_goes_when_it_is_shown() {
     let before = tree(&results);
     fs::create_dir(results.join("much/.trials")).unwrap();
     fs::write(results.join("much/.trials/lock"), "").unwrap();
-    fs::write(results.join(".unfinished"), "half").unwrap();
+    fs::create_dir(results.join(".trials")).unwrap();
+    fs::write(results.join(".trials/.half.writing"), "half").unwrap();
     timed(dir.path(), &COMPARE);
     assert_same(&before, &tree(&results), "after the study was shown");
     // And before it had said what it was.
     fs::remove_dir_all(&results).unwrap();
-    fs::create_dir_all(&results).unwrap();
-    fs::write(results.join(".unfinished"), "half").unwrap();
+    fs::create_dir_all(results.join(".trials")).unwrap();
+    fs::write(results.join(".trials/.half.writing"), "half").unwrap();
     timed(dir.path(), &COMPARE);
     assert_same(&before, &tree(&results), "after the study was begun again");
 }
