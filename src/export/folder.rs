@@ -9,7 +9,7 @@ use super::Tables;
 use super::files::{MANIFEST, PAGE, PICTURES, REPLAY, SUMMARY, TRACE_TABLES, is_trace, shows};
 use super::held::{FileEntry, document, held, measure, sealed, unseal};
 use super::manifest::Manifest;
-use super::place::{FolderError, Place, WriteError, failed, gone};
+use super::place::{FolderError, Place, WriteError, delete_folder, failed};
 use crate::experiment::{Claim, Parts, replace};
 use crate::metrics::Summary;
 
@@ -182,7 +182,7 @@ impl Folder {
     /// # Errors
     /// If the file system refuses.
     pub fn drop_trials(&self) -> Result<(), FolderError> {
-        gone(fs::remove_dir_all(self.trials())).map_err(failed("delete", &self.trials()))
+        delete_folder(&self.trials())
     }
 
     /// Deletes what an attempt that was cut short has left beside finished results, unless somebody is at work there. Where it

@@ -181,6 +181,18 @@ pub fn gone(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
+/// Deletes a folder and all that is in it, if it is there. A process that has not noticed yet may put something into it meanwhile.
+pub fn delete_folder(path: &Path) -> Result<(), FolderError> {
+    const TRIES: u32 = 10;
+    for _ in 1..TRIES {
+        match gone(fs::remove_dir_all(path)) {
+            Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => {}
+            done => return done.map_err(failed("delete", path)),
+        }
+    }
+    gone(fs::remove_dir_all(path)).map_err(failed("delete", path))
+}
+
 /// Says what failed on which file.
 pub fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FolderError {
     let path = path.to_owned();

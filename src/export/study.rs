@@ -12,7 +12,7 @@ use super::folder::{Contents, Folder, TRIALS, hold_page, write_whole};
 use super::held::{FileEntry, document, held, sealed, unseal};
 use super::manifest::{Difference, Manifest, compare, made_by, other_program};
 use super::picture;
-use super::place::{FolderError, Place, failed, gone, json};
+use super::place::{FolderError, Place, delete_folder, failed, json};
 use super::read;
 use crate::metrics::comparison::{Comparison, Trials};
 use crate::metrics::figures::Told;
@@ -196,7 +196,7 @@ impl StudyFolder {
     }
 
     fn drop_trials(&self) -> Result<(), FolderError> {
-        gone(fs::remove_dir_all(self.trials())).map_err(failed("delete", &self.trials()))
+        delete_folder(&self.trials())
     }
 
     /// The comparison, where `manifest` knows of one: all that compares the settings is as it was written.

@@ -19,7 +19,7 @@ use crate::report::{FailedTrial, ProcessProgress, Progress, SettingProgress};
 /// If there is no folder.
 pub fn status(dirs: &[PathBuf]) -> Result<Progress, MergeError> {
     let dirs = sources::folders(dirs, None);
-    let status = if StudyFolder::is_at(&dirs[0]) {
+    let status = if sources::are_of_study(&dirs)? {
         of_study(&dirs)?
     } else {
         of_scenario(&dirs)?

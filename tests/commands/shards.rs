@@ -441,12 +441,6 @@ fn how_far_shards_are_is_told_while_they_run_and_when_they_are_killed() {
         "1",
     ];
     // Trials that outlast the test.
-    let slow = fs::read_to_string(dir.path().join("base.ron")).unwrap();
-    fs::write(
-        dir.path().join("base.ron"),
-        slow.replace("trials: 9", "trials: 9, metrics: (connectivity_every: 1)"),
-    )
-    .unwrap();
     let mut child = desim(
         dir.path(),
         &[
@@ -499,7 +493,6 @@ fn how_far_shards_are_is_told_while_they_run_and_when_they_are_killed() {
         (&9.into(), &"1-3".into())
     );
 
-    fs::write(dir.path().join("base.ron"), BASE).unwrap();
     done(dir.path(), &arguments);
     let both = status(dir.path(), &["first", "second"]);
     assert_eq!(

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 use super::scenario::ScenarioResults;
 use super::study::StudyResults;
-use crate::export::{Pictures, StudyFolder};
+use crate::export::Pictures;
 use crate::scenario::Scenario;
 
 /// What is to be put together, and how.
@@ -62,16 +62,7 @@ pub enum Merged {
 /// # Panics
 /// If there is no folder.
 pub fn merge(merge: &Merge) -> Result<Merged, MergeError> {
-    let is_study = |dir: &PathBuf| StudyFolder::is_at(dir);
-    let (first, others) = merge.dirs.split_first().expect("at least one folder");
-    if let Some(other) = others.iter().find(|other| is_study(other) != is_study(first)) {
-        let kind = |dir| if is_study(dir) { "a study" } else { "one scenario" };
-        return Err(MergeError::Apart {
-            folders: [first.clone(), other.clone()],
-            differences: vec![format!("{} and {}", kind(first), kind(other))],
-        });
-    }
-    if is_study(first) {
+    if sources::are_of_study(merge.dirs)? {
         study::merge(merge)
     } else {
         scenario::merge(merge)

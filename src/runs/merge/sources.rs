@@ -127,6 +127,20 @@ pub fn agree_on_study(shards: &[(PathBuf, StudyManifest)]) -> Result<(), MergeEr
     Ok(())
 }
 
+/// Whether the folders, at least one, are of a study, and not of one scenario.
+pub fn are_of_study(dirs: &[PathBuf]) -> Result<bool, MergeError> {
+    let is_study = |dir: &PathBuf| StudyFolder::is_at(dir);
+    let (first, others) = dirs.split_first().expect("at least one folder");
+    let Some(other) = others.iter().find(|other| is_study(other) != is_study(first)) else {
+        return Ok(is_study(first));
+    };
+    let kind = |dir| if is_study(dir) { "a study" } else { "one scenario" };
+    Err(MergeError::Apart {
+        folders: [first.clone(), other.clone()],
+        differences: vec![format!("{} and {}", kind(first), kind(other))],
+    })
+}
+
 /// Whether `out` is one of the folders.
 pub fn is_among(dirs: &[PathBuf], out: &Path) -> bool {
     folders(dirs, Some(out)).len() == folders(dirs, None).len()
