@@ -48,7 +48,7 @@ pub fn write(
     let mut files: Vec<String> = Vec::new();
     let mut tables = Tables::create(parts.dir(), names, scene.targets.len()).map_err(failed("write", parts.dir()))?;
     let figures = scenario.figures();
-    let mut trials = Trials::new(&figures);
+    let mut trials = Trials::new(&figures, names.topics, names.roles);
     for trial in 0..scenario.trials {
         let part = parts.load(trial)?;
         tables.append(&part.record).map_err(failed("write", parts.dir()))?;
@@ -56,11 +56,11 @@ pub fn write(
             files.extend(draw(folder, &scene, &part.record, &reach(scenario, trial))?);
         }
         manifest.trials.push(entry(&part));
-        trials.add(part.record);
+        trials.add(&part.record);
     }
     let tables = tables.finish().map_err(failed("write", parts.dir()))?;
     files.extend(tables.into_iter().map(str::to_owned));
-    let summary = trials.summary(&scenario.name, names.topics, names.roles);
+    let summary = trials.summary(&scenario.name);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());
     for name in files {

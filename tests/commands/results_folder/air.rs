@@ -4,7 +4,7 @@ use std::path::Path;
 
 use desim::experiment::run_trial;
 use desim::export::Results;
-use desim::metrics::figures::Sample;
+use desim::metrics::figures::Samples;
 use desim::metrics::{Summary, TrialRecord};
 use desim::report::{Input, PageInput, Speed, page, terminal};
 use desim::scenario::{Scenario, parse};
@@ -95,16 +95,14 @@ fn every_figure_of_the_radio_stands_in_the_summary_at_the_place_that_its_key_say
     let scenario = busy();
     let records = records(&scenario);
     let registry = scenario.figures();
-    let mut samples: Vec<Vec<Sample>> = registry.figures().map(|_| Vec::new()).collect();
+    let mut samples = Samples::new(registry.figures().count());
     for record in &records {
-        for (samples, sample) in samples.iter_mut().zip(registry.read(record)) {
-            samples.push(sample);
-        }
+        samples.push(&registry.read(record));
     }
     let summary = serde_json::to_value(summary(&scenario, &records)).unwrap();
     let readme = include_str!("../../../results/README.md");
     let mut found = 0;
-    for estimated in registry.estimate(samples) {
+    for estimated in registry.estimate(&samples) {
         let key = &estimated.figure.key;
         if !key.starts_with("radio.") && key != "goodput_bps" {
             continue;
