@@ -6,14 +6,14 @@ use desim::experiment::run_trial;
 use desim::export::Results;
 use desim::metrics::figures::Samples;
 use desim::metrics::{Summary, TrialRecord};
-use desim::report::{Input, PageInput, Speed, page, terminal};
+use desim::report::{Input, PageInput, PageTrials, Speed, page, terminal};
 use desim::scenario::{Scenario, parse};
 use desim::simulation::DriverKind;
 use desim::text::{Style, columns};
 use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;
 
-use super::fixture::run;
+use super::fixture::{records_of, run};
 
 /// Eight robots that say more to their next than the channel takes, in and out of each other's range.
 fn busy() -> Scenario {
@@ -130,7 +130,7 @@ fn the_page_has_charts_of_delivery_by_distance_and_of_causes() {
         scenario: &scenario,
         topics: &names(scenario.topics()),
         roles: &names(scenario.protocol.roles()),
-        records: &records,
+        trials: &PageTrials::of(&scenario, records.iter().cloned()),
         summary: &summary(&scenario, &records),
         made_by: "desim 9.9",
         watch: None,
@@ -173,12 +173,13 @@ fn the_tables_hold_what_the_trials_told() {
         assert!(dir.path().join(format!("{table}.parquet")).exists(), "{table}");
     }
     let results = Results::open(dir.path()).unwrap();
-    for (read, written) in results.records.iter().zip(&all) {
+    let read = records_of(&results);
+    for (read, written) in read.iter().zip(&all) {
         assert_eq!(read.air, written.air);
         assert!(read.air.as_ref().is_some_and(|air| air.links.len() == 8));
     }
     assert_eq!(
-        summary(&scenario, &results.records),
+        summary(&scenario, &read),
         results.summary,
         "the figures follow from the tables"
     );

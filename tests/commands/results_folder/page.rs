@@ -5,7 +5,7 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use desim::metrics::{Outcome, Summary, TrialRecord};
-use desim::report::{PAGE_MARK, PageInput, page};
+use desim::report::{PAGE_MARK, PageInput, PageTrials, page};
 use desim::spool::Spool;
 use tempfile::tempdir;
 
@@ -16,12 +16,13 @@ const ROLES: [&str; 4] = ["free", "root", "networker", "worker"];
 
 fn page_of(records: &[TrialRecord], topics: &[&str], roles: &[&str], question: &str) -> String {
     let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    let scenario = scenario(records.len() as u32);
     page(&PageInput {
         question: Some(question),
-        scenario: &scenario(records.len() as u32),
+        scenario: &scenario,
         topics: &names(topics),
         roles: &names(roles),
-        records,
+        trials: &PageTrials::of(&scenario, records.iter().cloned()),
         summary: &Summary::of("made-up", topics, roles, records),
         made_by: "desim 9.9",
         watch: None,
