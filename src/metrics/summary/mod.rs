@@ -150,7 +150,9 @@ impl Summary {
     #[must_use]
     pub fn by(registry: &Registry, scenario: &str, topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Self {
         let mut trials = Trials::new(registry, topics, roles);
-        records.iter().for_each(|record| trials.add(record));
+        for record in records {
+            trials.add(record);
+        }
         trials.summary(scenario)
     }
 
@@ -159,7 +161,7 @@ impl Summary {
         let figures = &Figures(trials.registry.estimate(&trials.samples).collect());
         Self {
             scenario: scenario.to_owned(),
-            trials: trials.trials,
+            trials: trials.count,
             completed: trials.completed,
             digest: format!("{:032x}", trials.digest.digest128()),
             completion_ratio: figures.measured("completion_ratio", DIMENSIONLESS),

@@ -21,7 +21,7 @@ pub struct Trials<'a> {
     pub(super) registry: &'a Registry,
     pub(super) topics: &'a [&'a str],
     pub(super) roles: &'a [&'a str],
-    pub(super) trials: u64,
+    pub(super) count: u64,
     pub(super) completed: u64,
     /// Of the trials' digests.
     pub(super) digest: Xxh3,
@@ -50,7 +50,7 @@ impl<'a> Trials<'a> {
             registry,
             topics,
             roles,
-            trials: 0,
+            count: 0,
             completed: 0,
             digest: Xxh3::new(),
             steps: 0,
@@ -71,7 +71,7 @@ impl<'a> Trials<'a> {
 
     /// Takes in the next trial.
     pub fn add(&mut self, record: &TrialRecord) {
-        self.trials += 1;
+        self.count += 1;
         self.completed += u64::from(matches!(record.outcome, Outcome::Completed { .. }));
         self.digest.update(&record.digest.to_le_bytes());
         self.steps += record.steps;
