@@ -10,7 +10,7 @@ use super::page_file::{self, Place};
 use super::shown::{Finished, Format, print_comparison};
 use crate::export::{Folder, Manifest, PAGE, Results, StudyFolder, StudyManifest, WriteError};
 use crate::metrics::comparison::Comparison;
-use crate::report::{PageInput, SettingTrials, Watch, page, study_page};
+use crate::report::{PageInput, PageTrials, SettingTrials, Watch, page, study_page};
 use crate::text::shown;
 
 /// What `desim report --help` says.
@@ -164,26 +164,30 @@ fn write_page(results: &Results, arguments: &ReportArguments) -> Result<Option<V
     let folder = Folder::new(dir.clone());
     // Trials of several folders have the same numbers.
     let watch = (results.sources.len() == 1).then(|| watch(&folder, "", arguments.out.is_none()));
-    let html = || {
-        page(&PageInput {
+    let html = || -> Result<String, Failure> {
+        let mut trials = PageTrials::new(&results.scenario);
+        for record in results.records() {
+            trials.add(record?);
+        }
+        Ok(page(&PageInput {
             question: question(results).as_deref(),
             scenario: &results.scenario,
             topics: &results.names.topics,
             roles: &results.names.roles,
-            records: &results.records,
+            trials: &trials,
             summary: &results.summary,
             made_by: &manifest.made_by(),
             watch: watch.clone(),
-        })
+        }))
     };
     let names = |manifest: &Manifest| manifest.files.keys().cloned().collect();
     match (&arguments.out, results.sources.len()) {
         (Some(file), many) => {
             let files = if many == 1 { names(manifest) } else { Vec::new() };
-            Ok((page_file::write(file, &html(), PAGE, "has the charts")? == Place::File).then_some(files))
+            Ok((page_file::write(file, &html()?, PAGE, "has the charts")? == Place::File).then_some(files))
         }
         (None, 1) => {
-            let kept_page = folder.keep_page(manifest, &html());
+            let kept_page = folder.keep_page(manifest, &html()?);
             let files = names(kept_page.as_ref().unwrap_or(manifest));
             kept(dir, kept_page)?;
             Ok(Some(files))

@@ -5,6 +5,7 @@ use std::fs::File;
 
 use crate::metrics::TrialRecord;
 use crate::metrics::figures::Told;
+use crate::spool::Section;
 
 /// What the tables call topics and roles, in the order of their numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,12 +22,25 @@ pub const READ: [&str; 1] = ["trials.parquet"];
 /// Names of tables that may be there: none.
 pub const OPTIONAL: [&str; 0] = [];
 
-/// Nothing.
-///
-/// # Errors
-/// Always.
-pub fn records(_: &mut BTreeMap<String, File>, _: &NameLists) -> Result<Vec<TrialRecord>, (&'static str, String)> {
-    Err((READ[0], "this desim was built without Parquet".to_owned()))
+/// No records.
+pub struct Reader;
+
+impl Reader {
+    /// Nothing.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn new(_: &BTreeMap<String, Section>, _: &NameLists) -> Result<Self, (&'static str, String)> {
+        Err((READ[0], "this desim was built without Parquet".to_owned()))
+    }
+}
+
+impl Iterator for Reader {
+    type Item = Result<TrialRecord, (&'static str, String)>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        None
+    }
 }
 
 /// Nothing.

@@ -1,15 +1,18 @@
 //! Finished results, read back for reports: the files must be those that desim wrote, and results that are put together
 //! must be of the same scenario and version.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::files::{MANIFEST, SUMMARY};
 use super::folder::{Contents, Folder};
 use super::manifest::{Difference, Manifest};
 use super::place::FolderError;
-use super::read::{self, NameLists};
+use super::read::{self, NameLists, Reader};
+use crate::metrics::summary::Trials;
 use crate::metrics::{Summary, TrialRecord};
 use crate::scenario::Scenario;
+use crate::spool::Section;
 use crate::text::shown;
 
 /// Finished results of one scenario, from one folder or several.
@@ -21,10 +24,10 @@ pub struct Results {
     pub scenario: Scenario,
     /// What the protocol calls its topics and roles.
     pub names: NameLists,
-    /// The trials, without their paths: folder by folder, each in order of trials.
-    pub records: Vec<TrialRecord>,
-    /// The figures of all of them.
+    /// The figures of all trials.
     pub summary: Summary,
+    /// The tables of each folder, by name, verified and open.
+    tables: Vec<BTreeMap<String, Section>>,
 }
 
 /// Results cannot be read, or not together.
@@ -55,7 +58,7 @@ impl Results {
     /// Reads the results in `dir`.
     ///
     /// # Errors
-    /// If there are none, or they are unfinished, or a file is not the one that the manifest describes.
+    /// If there are none, or they are unfinished, or a file is not the one that the manifest describes, or a table lacks a column.
     pub fn open(dir: &Path) -> Result<Self, ResultsError> {
         let folder = Folder::new(dir.to_owned());
         let manifest = match folder.contents() {
@@ -75,7 +78,9 @@ impl Results {
         let version = |file: &str, reason: String| FolderError::version(&dir.join(file), &reason, &manifest.version);
         let summary = folder.summary_in(&mut files, &manifest)?;
         let names = names(&summary);
-        let records = read::records(&mut files, &names).map_err(|(file, wrong)| version(file, wrong))?;
+        let section = |(name, file)| (name, Section::of(file, 0));
+        let tables: BTreeMap<String, Section> = files.into_iter().map(section).collect();
+        Reader::new(&tables, &names).map_err(|(file, wrong)| version(file, wrong))?;
         let scenario = manifest
             .read_scenario(dir)
             .map_err(|reason| version(MANIFEST, reason))?;
@@ -83,8 +88,8 @@ impl Results {
             sources: vec![(dir.to_owned(), manifest)],
             scenario,
             names,
-            records,
             summary,
+            tables: vec![tables],
         })
     }
 
@@ -103,20 +108,46 @@ impl Results {
             let other = Self::open(dir)?;
             all.admit(&other)?;
             all.sources.extend(other.sources);
-            all.records.extend(other.records);
+            all.tables.extend(other.tables);
         }
         if !others.is_empty() {
             let [topics, roles]: [Vec<&str>; 2] =
                 [&all.names.topics, &all.names.roles].map(|names| names.iter().map(String::as_str).collect());
-            all.summary = Summary::by(
-                &all.scenario.figures(),
-                &all.scenario.name,
-                &topics,
-                &roles,
-                &all.records,
-            );
+            let figures = all.scenario.figures();
+            let mut trials = Trials::new(&figures, &topics, &roles);
+            for record in all.records() {
+                trials.add(&record?);
+            }
+            all.summary = trials.summary(&all.scenario.name);
         }
         Ok(all)
+    }
+
+    /// The record of each trial, without its path: folder by folder, each in order of trials. They are read one by one, as they are asked for:
+    /// all of them may be more than memory holds.
+    ///
+    /// ```no_run
+    /// # use std::path::Path;
+    /// # use desim::export::{Results, ResultsError};
+    /// let results = Results::open(Path::new("results/quickstart"))?;
+    /// for record in results.records() {
+    ///     println!("{} control steps", record?.steps);
+    /// }
+    /// # Ok::<(), ResultsError>(())
+    /// ```
+    ///
+    /// Where a table is not what it should be an error takes the place of the record, and the folder's records end.
+    pub fn records(&self) -> impl Iterator<Item = Result<TrialRecord, ResultsError>> + '_ {
+        let folders = self.sources.iter().zip(&self.tables);
+        folders.flat_map(|((dir, manifest), tables)| {
+            let (reader, wrong) = match Reader::new(tables, &self.names) {
+                Ok(reader) => (Some(reader), None),
+                Err(wrong) => (None, Some(Err(wrong))),
+            };
+            wrong.into_iter().chain(reader.into_iter().flatten()).map(|read| {
+                read.map_err(|(file, wrong)| FolderError::version(&dir.join(file), &wrong, &manifest.version).into())
+            })
+        })
     }
 
     /// Whether `other`, of one folder, can join.

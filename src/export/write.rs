@@ -49,7 +49,7 @@ pub fn write(
     let (mut files, staging) = (Vec::<String>::new(), folder.trials());
     let mut tables = Tables::create(&staging, names, scene.targets.len()).map_err(failed("write", &staging))?;
     let figures = scenario.figures();
-    let mut trials = Trials::new(&figures);
+    let mut trials = Trials::new(&figures, names.topics, names.roles);
     for trial in 0..scenario.trials {
         let part = kept.load(trial)?;
         tables.append(&part.record).map_err(failed("write", &staging))?;
@@ -57,11 +57,11 @@ pub fn write(
             files.extend(draw(folder, &scene, &part.record, &reach(scenario, trial))?);
         }
         manifest.trials.push(entry(&part));
-        trials.add(part.record);
+        trials.add(&part.record);
     }
     let tables = tables.finish().map_err(failed("write", &staging))?;
     files.extend(tables.into_iter().map(str::to_owned));
-    let summary = trials.summary(&scenario.name, names.topics, names.roles);
+    let summary = trials.summary(&scenario.name);
     folder.stage(SUMMARY, &json(&summary))?;
     files.push(SUMMARY.to_owned());
     for name in files {

@@ -11,12 +11,11 @@ use crate::engine::Span;
 const DIGITS: u32 = 7;
 /// Buckets that a power of two is cut into.
 const PER_OCTAVE: u64 = 1 << DIGITS;
-/// Buckets in all: two octaves of single nanoseconds, and one for each further octave of a `u64`.
-const BUCKETS: usize = (PER_OCTAVE as usize) * (64 - DIGITS as usize + 1);
 
 /// Counts of latencies, in nanoseconds; least, greatest, number and sum are exact.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LatencyHistogram {
+    /// By bucket, up to the last that holds something.
     counts: Vec<u64>,
     count: u64,
     sum: u128,
@@ -27,7 +26,7 @@ pub struct LatencyHistogram {
 impl Default for LatencyHistogram {
     fn default() -> Self {
         Self {
-            counts: vec![0; BUCKETS],
+            counts: Vec::new(),
             count: 0,
             sum: 0,
             min: u64::MAX,
@@ -41,7 +40,7 @@ impl LatencyHistogram {
     #[inline]
     pub fn record(&mut self, latency: Span) {
         let nanos = latency.as_nanos();
-        self.counts[bucket_of(nanos)] += 1;
+        *self.bucket(nanos) += 1;
         self.count += 1;
         self.sum += u128::from(nanos);
         self.min = self.min.min(nanos);
@@ -61,15 +60,26 @@ impl LatencyHistogram {
 
     /// Counts `count` latencies in the bucket from `low` to `high`, both in nanoseconds, as [`buckets`](Self::buckets) has it.
     pub fn fill(&mut self, (low, high, count): (u64, u64, u64)) {
-        self.counts[bucket_of(low)] += count;
+        *self.bucket(low) += count;
         self.count += count;
         // No more than a bound where the extremes are not known.
         self.min = self.min.min(high);
         self.max = self.max.max(low);
     }
 
+    /// The count of the bucket of a latency.
+    #[inline]
+    fn bucket(&mut self, nanos: u64) -> &mut u64 {
+        let bucket = bucket_of(nanos);
+        if bucket >= self.counts.len() {
+            self.counts.resize(bucket + 1, 0);
+        }
+        &mut self.counts[bucket]
+    }
+
     /// Adds all latencies of `other`.
     pub fn merge(&mut self, other: &Self) {
+        self.counts.resize(self.counts.len().max(other.counts.len()), 0);
         for (mine, theirs) in self.counts.iter_mut().zip(&other.counts) {
             *mine += theirs;
         }
@@ -156,6 +166,9 @@ pub(super) fn bounds_of(bucket: usize) -> (u64, u64) {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    /// Buckets in all: two octaves of single nanoseconds, and one for each further octave of a `u64`.
+    const BUCKETS: usize = (PER_OCTAVE as usize) * (64 - DIGITS as usize + 1);
 
     fn histogram_of(nanos: &[u64]) -> LatencyHistogram {
         let mut histogram = LatencyHistogram::default();

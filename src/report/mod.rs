@@ -25,7 +25,7 @@ pub use comparison::{ComparisonInput, comparison, describe};
 pub use explanation::{Explained, Explanation, Fate, Outage, Status};
 pub use frame::{CopyStory, FrameStory, FrameTrace, MessageStory};
 #[cfg(feature = "command")]
-pub use html::{PAGE_MARK, PageInput, SettingTrials, Watch, page, study_page};
+pub use html::{PAGE_MARK, PageInput, PageTrials, SettingTrials, Watch, page, study_page};
 pub use layout::message;
 pub use missed::Asked;
 pub use number::seconds;

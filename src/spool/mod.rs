@@ -1,8 +1,10 @@
-//! Lists that grow with simulated time and may outgrow memory: [`Spool`].
+//! Lists that grow with simulated time and may outgrow memory: [`Spool`]; and tables of numbers that grow with the number of trials:
+//! [`Columns`].
 //!
 //! What a run keeps of every suspicion or sample would fill the memory of a machine on a long day. A spool keeps its latest entries in memory
 //! and the earlier ones in a file without a name, which is gone with the process, whatever ends it.
 
+mod columns;
 mod entry;
 mod iter;
 mod spilled;
@@ -16,6 +18,7 @@ use std::sync::Arc;
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+pub use columns::Columns;
 pub use entry::Entry;
 pub(crate) use entry::entry;
 pub use iter::Iter;

@@ -34,10 +34,30 @@ impl Section {
         }
     }
 
-    fn at(&self, place: usize) -> io::Result<MutexGuard<'_, File>> {
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        file.seek(SeekFrom::Start(self.start + place as u64))?;
+    /// How many bytes there are up to the end of the file.
+    ///
+    /// # Errors
+    /// If the file system does not say so.
+    pub fn length(&self) -> io::Result<u64> {
+        Ok(self.file().metadata()?.len().saturating_sub(self.start))
+    }
+
+    /// Reads bytes from byte `place` on, and says how many, as [`Read::read`] does. Whoever else reads the file meanwhile is not disturbed.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn read(&self, place: u64, into: &mut [u8]) -> io::Result<usize> {
+        self.at(place)?.read(into)
+    }
+
+    fn at(&self, place: u64) -> io::Result<MutexGuard<'_, File>> {
+        let mut file = self.file();
+        file.seek(SeekFrom::Start(self.start + place))?;
         Ok(file)
+    }
+
+    fn file(&self) -> MutexGuard<'_, File> {
+        self.file.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -82,7 +102,7 @@ impl Spilled {
     /// Adds `bytes`. If that fails, there is what there was.
     pub fn append(&mut self, bytes: &[u8], folder: Option<&Path>) -> io::Result<()> {
         self.make_own(folder)?;
-        self.section.at(self.len)?.write_all(bytes)?;
+        self.section.at(self.len as u64)?.write_all(bytes)?;
         self.len += bytes.len();
         Ok(())
     }
@@ -90,13 +110,13 @@ impl Spilled {
     /// Writes `bytes` over those at `place`.
     pub fn write(&mut self, place: usize, bytes: &[u8], folder: Option<&Path>) -> io::Result<()> {
         self.make_own(folder)?;
-        self.section.at(place)?.write_all(bytes)
+        self.section.at(place as u64)?.write_all(bytes)
     }
 
     /// `len` bytes from `place` on.
     pub fn read(&self, place: usize, len: usize) -> io::Result<Vec<u8>> {
         let mut bytes = vec![0; len];
-        self.section.at(place)?.read_exact(&mut bytes)?;
+        self.section.at(place as u64)?.read_exact(&mut bytes)?;
         Ok(bytes)
     }
 

@@ -159,6 +159,20 @@ pub fn mean(values: &[f64]) -> Estimate {
     Estimator::Mean.estimate(&values.iter().map(|&value| [value, 1.0]).collect::<Vec<_>>())
 }
 
+/// The value of the [`mean`] of `values` alone: its interval takes far longer.
+#[must_use]
+pub fn mean_value(values: &[f64]) -> Option<f64> {
+    let first = *values.first()?;
+    // Equal values are exactly their mean.
+    let are_equal = values.iter().all(|value| (value - first).abs() <= 0.0);
+    let mean = if are_equal {
+        first
+    } else {
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    mean.is_finite().then_some(mean)
+}
+
 /// The share of `trials` that were `successes`, with Wilson's score interval.
 #[must_use]
 pub fn proportion(successes: u64, trials: u64) -> Estimate {
@@ -343,6 +357,15 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn the_value_of_a_mean_is_that_of_its_estimate_to_the_last_bit(
+            values in prop::collection::vec(-9.0..9.0_f64, 0..20), equal: f64, count in 0_usize..9,
+        ) {
+            for values in [values, vec![equal; count]] {
+                prop_assert_eq!(mean_value(&values).map(f64::to_bits), mean(&values).value.map(f64::to_bits));
+            }
+        }
+
         #[test]
         fn every_interval_holds_its_value_and_stays_within_the_bounds_of_its_figure(
             parts in prop::collection::vec((0.0..=1.0_f64, 0.1..20.0_f64), 2..40),

@@ -24,14 +24,14 @@ mod times;
 
 pub use difference::difference;
 pub use epidemic::SimpleEpidemic;
-pub use estimator::{Estimator, mean, proportion};
+pub use estimator::{Estimator, mean, mean_value, proportion};
 pub use family::{POWER, fewest_trials, holm, testable, trials_needed};
 pub use median::median;
 pub use permutation::{Part, Tested, least_of_pairs, paired_permutation, ratio_of_sums, sign_permutation};
 pub use ranks::{cliffs_delta, cliffs_delta_estimate, least_of_groups, least_of_ranks, mann_whitney, wilcoxon};
 pub use spread::{gini, quantile};
 pub use survival::{Observation, Step, log_rank, median_survival, survival_curve};
-pub use times::{Lasting, Times, pseudo_values};
+pub use times::{Lasting, Times, pseudo_values, pseudo_values_in_a_row};
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal};

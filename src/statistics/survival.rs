@@ -145,26 +145,27 @@ fn band(survival: f64, greenwood: f64) -> [f64; 2] {
 /// It makes no use of pairs, and so says less than it might where trials share their random numbers. `None` where nothing happened.
 #[must_use]
 pub fn log_rank(a: &[Observation], b: &[Observation]) -> Option<f64> {
-    let mut times: Vec<f64> = a
-        .iter()
-        .chain(b)
-        .filter(|seen| seen.happened)
-        .map(|seen| seen.time)
-        .collect();
-    times.sort_by(f64::total_cmp);
+    let sorted = |group: &[Observation], counts: fn(&Observation) -> bool| {
+        let mut times: Vec<f64> = group.iter().filter(|seen| counts(seen)).map(|seen| seen.time).collect();
+        times.sort_unstable_by(f64::total_cmp);
+        times
+    };
+    let [watched_a, watched_b] = [a, b].map(|group| sorted(group, |_| true));
+    let [happened_a, happened_b] = [a, b].map(|group| sorted(group, |seen| seen.happened));
+    let mut times = [&happened_a[..], &happened_b].concat();
+    times.sort_unstable_by(f64::total_cmp);
     times.dedup();
+    let before = |times: &[f64], time: f64| times.partition_point(|other| *other < time);
+    let at_risk = |times: &[f64], time: f64| (times.len() - before(times, time)) as f64;
+    let just_then =
+        |times: &[f64], time: f64| (times.partition_point(|other| *other <= time) - before(times, time)) as f64;
     let (mut surplus, mut variance) = (0.0, 0.0);
     for time in times {
-        let at_risk = |group: &[Observation]| group.iter().filter(|seen| seen.time >= time).count() as f64;
-        let happened = |group: &[Observation]| {
-            let now = group
-                .iter()
-                .filter(|seen| seen.happened && seen.time.total_cmp(&time).is_eq());
-            now.count() as f64
-        };
-        let (n, share) = (at_risk(a) + at_risk(b), at_risk(a) / (at_risk(a) + at_risk(b)));
-        let events = happened(a) + happened(b);
-        surplus += happened(a) - events * share;
+        let (risk_a, risk_b) = (at_risk(&watched_a, time), at_risk(&watched_b, time));
+        let (n, share) = (risk_a + risk_b, risk_a / (risk_a + risk_b));
+        let events_a = just_then(&happened_a, time);
+        let events = events_a + just_then(&happened_b, time);
+        surplus += events_a - events * share;
         if n > 1.0 {
             variance += events * share * (1.0 - share) * (n - events) / (n - 1.0);
         }

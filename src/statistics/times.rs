@@ -32,10 +32,15 @@ impl Times {
     /// The times, in order.
     #[must_use]
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Observation> + Clone {
-        self.0.iter().map(|time| Observation {
-            time: time.abs(),
-            happened: time.is_sign_positive(),
-        })
+        self.0.iter().map(|time| seen(*time))
+    }
+}
+
+/// What a time says that bears the sign.
+fn seen(time: f64) -> Observation {
+    Observation {
+        time: time.abs(),
+        happened: time.is_sign_positive(),
     }
 }
 
@@ -291,6 +296,26 @@ pub fn pseudo_values(times: &[Times]) -> (Vec<Part>, Lasting) {
     for times in times {
         all.0.extend(&times.0);
     }
+    parts_of(all, times.iter().map(|times| &times.0[..]))
+}
+
+/// The same of trials whose times stand in `times` one trial after another, each so many as `counts` says.
+///
+/// # Panics
+/// If there are fewer times than that.
+#[must_use]
+pub fn pseudo_values_in_a_row(times: &Times, counts: impl IntoIterator<Item = usize>) -> (Vec<Part>, Lasting) {
+    let mut rest = &times.0[..];
+    let of_trials = counts.into_iter().map(|count| {
+        let (of_trial, others) = rest.split_at(count);
+        rest = others;
+        of_trial
+    });
+    parts_of(times.clone(), of_trials)
+}
+
+/// The parts of trials, whose times are `all` together.
+fn parts_of<'a>(all: Times, trials: impl Iterator<Item = &'a [f64]>) -> (Vec<Part>, Lasting) {
     let cut_off = all.iter().filter(|seen| !seen.happened).count() as u64;
     let (none_happened, is_empty) = (all.len() as u64 == cut_off, all.is_empty());
     let curve = Curve::of(all);
@@ -300,14 +325,14 @@ pub fn pseudo_values(times: &[Times]) -> (Vec<Part>, Lasting) {
         restricted_to: (!is_empty && curve.left(&mut steps) > 0.0).then_some(curve.longest),
     };
     if none_happened {
-        return (vec![[0.0; 2]; times.len()], lasting);
+        return (trials.map(|_| [0.0; 2]).collect(), lasting);
     }
-    let mut value = |seen: Observation| match cut_off {
-        0 => seen.time,
-        _ => curve.pseudo_value(seen, &mut steps),
+    let mut value = |time: &f64| match cut_off {
+        0 => time.abs(),
+        _ => curve.pseudo_value(seen(*time), &mut steps),
     };
-    let part = |times: &Times| [times.iter().map(&mut value).sum(), times.len() as f64];
-    (times.iter().map(part).collect(), lasting)
+    let part = |times: &[f64]| [times.iter().map(&mut value).sum(), times.len() as f64];
+    (trials.map(part).collect(), lasting)
 }
 
 #[cfg(test)]

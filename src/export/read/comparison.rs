@@ -5,13 +5,14 @@ use std::fs::File;
 
 use super::table::{Table, Wrong};
 use crate::metrics::figures::Told;
+use crate::spool::Section;
 
 /// What trials that have a value tell of the figure with the key `figure`, by the names of settings.
 ///
 /// # Errors
 /// If it is no such table.
 pub fn told(file: File, figure: &str) -> Result<BTreeMap<String, Vec<Told>>, Wrong> {
-    let mut table = Table::new(file)?;
+    let mut table = Table::new(&Section::of(file, 0))?;
     let mut settings: BTreeMap<String, Vec<Told>> = BTreeMap::new();
     loop {
         let (names, figures) = (table.texts("setting")?, table.texts("figure")?);
@@ -28,7 +29,7 @@ pub fn told(file: File, figure: &str) -> Result<BTreeMap<String, Vec<Told>>, Wro
                 });
             }
         }
-        if !table.advance() {
+        if !table.advance(u32::MAX)? {
             return Ok(settings);
         }
     }

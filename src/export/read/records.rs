@@ -1,7 +1,5 @@
 //! From the tables of a results folder back to the records that they were written from.
 
-use std::collections::BTreeMap;
-
 use super::table::Wrong;
 use crate::metrics::TrialRecord;
 
@@ -30,28 +28,40 @@ fn number(names: &[String], name: &str, what: &str) -> Result<u8, Wrong> {
     place.ok_or_else(|| format!("summary.json knows no {what} `{name}`"))
 }
 
-/// The records that are being put together, by number of trial.
+/// The record that is being put together.
 pub struct Records<'a> {
     pub names: &'a NameLists,
-    pub(super) by_trial: BTreeMap<u32, TrialRecord>,
+    record: Option<TrialRecord>,
 }
 
 impl<'a> Records<'a> {
     pub fn new(names: &'a NameLists) -> Self {
-        Self {
-            names,
-            by_trial: BTreeMap::new(),
-        }
+        Self { names, record: None }
     }
 
-    /// The records, in order of trials.
-    pub fn finish(self) -> Vec<TrialRecord> {
-        self.by_trial.into_values().collect()
+    /// Begins with what `trials.parquet` has of a trial.
+    pub fn begin(&mut self, record: TrialRecord) {
+        self.record = Some(record);
     }
 
+    /// The number of the trial whose record it is.
+    pub fn trial(&self) -> Option<u32> {
+        self.record.as_ref().map(|record| record.trial)
+    }
+
+    /// The record, as far as it was put together.
+    pub fn finish(self) -> Option<TrialRecord> {
+        self.record
+    }
+
+    /// The record, if it is that of `trial`.
     pub fn of(&mut self, trial: u32) -> Result<&mut TrialRecord, Wrong> {
-        self.by_trial
-            .get_mut(&trial)
-            .ok_or_else(|| format!("it has rows of trial {trial}, of which trials.parquet has none"))
+        let record = self.record.as_mut().filter(|record| record.trial == trial);
+        record.ok_or_else(|| stray(trial))
     }
+}
+
+/// What is wrong with a table that has rows of `trial`.
+pub fn stray(trial: u32) -> Wrong {
+    format!("it has rows of trial {trial}, of which trials.parquet has none")
 }

@@ -1,46 +1,104 @@
-//! A Parquet file read back by the names and types of its columns.
+//! A Parquet file read back by the names and types of its columns, a stretch of rows at a time.
 
-use std::fs::File;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, VecDeque};
 
 use parquet::basic::Type as Physical;
-use parquet::column::reader::get_typed_column_reader;
 use parquet::data_type::{ByteArrayType, DataType, DoubleType, Int32Type, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::reader::FileReader;
+
+use super::chunks::Chunks;
+use super::column::{Levels, Parquet, Reading};
+use crate::spool::Section;
 
 /// What is wrong with a table, in words.
 pub type Wrong = String;
 
-/// A group of a table's rows.
-pub struct Table {
-    reader: SerializedFileReader<File>,
-    /// Number of the group.
-    group: usize,
-}
+/// Rows that are read at a time, at most: a trial may have more than memory holds.
+const MOST_ROWS: usize = 1 << 14;
+/// Numbers of trials that are looked at ahead.
+const AHEAD: usize = 1 << 10;
+/// The column by whose order rows are read.
+const TRIAL: &str = "trial";
 
-/// A column as the file holds it: values where there are some, and for each row and place in a list whether it has one
-/// and whether it goes on with the list before.
-struct Levels<T> {
-    values: Vec<T>,
-    present: Vec<i16>,
-    continued: Vec<i16>,
+/// A table in order of trials, and the stretch of its rows that is at hand: at first none.
+pub struct Table {
+    reader: Parquet,
+    /// The first of the rows at hand, from 0, and how many they are.
+    first: usize,
+    rows: usize,
+    /// The numbers of the trials of the rows to come.
+    ahead: VecDeque<u32>,
+    looking: Reading,
+    /// How far columns are read, by their places.
+    columns: RefCell<BTreeMap<usize, Reading>>,
 }
 
 impl Table {
-    /// The first rows of the table in a file.
+    /// The table in a file.
     ///
     /// # Errors
     /// If it is no Parquet file.
-    pub fn new(file: File) -> Result<Self, Wrong> {
-        SerializedFileReader::new(file)
-            .map(|reader| Self { reader, group: 0 })
-            .map_err(|error| format!("no Parquet file: {error}"))
+    pub fn new(file: &Section) -> Result<Self, Wrong> {
+        let chunks = Chunks::of(file).map_err(ParquetError::from);
+        let reader = chunks.and_then(Parquet::new);
+        let reader = reader.map_err(|error| format!("no Parquet file: {error}"))?;
+        Ok(Self {
+            reader,
+            first: 0,
+            rows: 0,
+            ahead: VecDeque::new(),
+            looking: Reading::default(),
+            columns: RefCell::default(),
+        })
     }
 
-    /// Goes on to the next rows; false if there are none.
-    pub fn advance(&mut self) -> bool {
-        self.group += 1;
-        self.group < self.reader.num_row_groups()
+    /// Goes on to the next rows of trials up to `trial`: to all of them, or so many as are read at a time. False if there are none.
+    ///
+    /// # Errors
+    /// If it does not say of which trials its rows are.
+    pub fn advance(&mut self, trial: u32) -> Result<bool, Wrong> {
+        self.first += self.rows;
+        self.rows = 0;
+        while self.rows < MOST_ROWS && self.next_trial()?.is_some_and(|next| next <= trial) {
+            self.ahead.pop_front();
+            self.rows += 1;
+        }
+        Ok(self.rows > 0)
+    }
+
+    /// Goes on to the next row. False if there is none.
+    ///
+    /// # Errors
+    /// As of [`advance`](Self::advance).
+    pub fn advance_by_one(&mut self) -> Result<bool, Wrong> {
+        self.first += self.rows;
+        self.rows = usize::from(self.next_trial()?.is_some());
+        self.ahead.pop_front();
+        Ok(self.rows > 0)
+    }
+
+    /// The trial of the first row after those at hand, if there is one.
+    ///
+    /// # Errors
+    /// As of [`advance`](Self::advance).
+    pub fn next_trial(&mut self) -> Result<Option<u32>, Wrong> {
+        if self.ahead.is_empty() {
+            let place = self.place_of::<Int32Type>(TRIAL)?;
+            let rows = AHEAD.min(self.len() - self.looking.at);
+            let mut levels = Levels::default();
+            let read = self.looking.read::<Int32Type>(&self.reader, place, rows, &mut levels);
+            read.map_err(|error| unreadable(TRIAL, &error))?;
+            let numbers = levels.values.into_iter().map(|value| unsigned(TRIAL, value));
+            self.ahead = numbers.collect::<Result<_, _>>()?;
+        }
+        Ok(self.ahead.front().copied())
+    }
+
+    /// How many rows there are in all.
+    fn len(&self) -> usize {
+        usize::try_from(self.reader.metadata().file_metadata().num_rows()).unwrap_or(0)
     }
 
     /// Whether there is such a column.
@@ -173,47 +231,37 @@ impl Table {
         schema.columns().iter().position(is_it)
     }
 
-    fn levels<T: DataType>(&self, name: &str) -> Result<Levels<T::T>, Wrong> {
+    /// The place of the column `name`, which must be of this type.
+    fn place_of<T: DataType>(&self, name: &str) -> Result<usize, Wrong> {
         let place = self.place(name).ok_or_else(|| format!("it has no column `{name}`"))?;
         let schema = self.reader.metadata().file_metadata().schema_descr();
         let there: Physical = schema.column(place).physical_type();
-        if there != T::get_physical_type() {
-            let wanted = T::get_physical_type();
-            return Err(format!("its column `{name}` is of type {there}, not {wanted}"));
+        if there == T::get_physical_type() {
+            return Ok(place);
         }
-        let mut levels = Levels {
-            values: Vec::new(),
-            present: Vec::new(),
-            continued: Vec::new(),
-        };
-        self.fill::<T>(place, &mut levels)
-            .map_err(|error| format!("its column `{name}` cannot be read: {error}"))?;
-        Ok(levels)
+        let wanted = T::get_physical_type();
+        Err(format!("its column `{name}` is of type {there}, not {wanted}"))
     }
 
-    fn fill<T: DataType>(&self, place: usize, into: &mut Levels<T::T>) -> Result<(), ParquetError> {
-        // A table without rows has no groups.
-        if self.group >= self.reader.num_row_groups() {
-            return Ok(());
+    /// The rows at hand of the column `name`.
+    fn levels<T: DataType>(&self, name: &str) -> Result<Levels<T::T>, Wrong> {
+        let place = self.place_of::<T>(name)?;
+        let mut columns = self.columns.borrow_mut();
+        let column = columns.entry(place).or_default();
+        if column.at > self.first {
+            *column = Reading::default();
         }
-        let group = self.reader.get_row_group(self.group)?;
-        let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        let mut column = get_typed_column_reader::<T>(group.get_column_reader(place)?);
-        let mut read = 0;
-        while read < rows {
-            let (records, _, _) = column.read_records(
-                rows - read,
-                Some(&mut into.present),
-                Some(&mut into.continued),
-                &mut into.values,
-            )?;
-            if records == 0 {
-                return Err(ParquetError::EOF(format!("{read} rows instead of {rows}")));
-            }
-            read += records;
-        }
-        Ok(())
+        let mut levels = Levels::default();
+        column
+            .skip::<T>(&self.reader, place, self.first)
+            .and_then(|()| column.read::<T>(&self.reader, place, self.rows, &mut levels))
+            .map_err(|error| unreadable(name, &error))?;
+        Ok(levels)
     }
+}
+
+fn unreadable(name: &str, error: &ParquetError) -> Wrong {
+    format!("its column `{name}` cannot be read: {error}")
 }
 
 fn unsigned(name: &str, value: i32) -> Result<u32, Wrong> {

@@ -7,7 +7,7 @@ use crate::metrics::detection::DetectionRecord;
 use crate::metrics::{Asked, LatencyHistogram, Outcome, TopicFates, TrialRecord};
 use crate::spool::Spool;
 
-/// Begins a record for each row of `trials.parquet`.
+/// Begins the record of the row of `trials.parquet`.
 pub fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
     let (trial, seed) = (table.ids("trial")?, table.keys("seed")?);
     let (outcome, steps) = (table.texts("outcome")?, table.counts("steps")?);
@@ -55,7 +55,7 @@ pub fn trials(records: &mut Records, table: &Table) -> Result<(), Wrong> {
             trajectories: Spool::default(),
             trace: None,
         };
-        records.by_trial.insert(trial[row], record);
+        records.begin(record);
     }
     let [least, most] = ["latency_min_ns", "latency_max_ns"].map(|name| table.optional_keys(name));
     let (least, most, sum) = (least?, most?, table.optional_numbers("latency_sum_ns")?);

@@ -6,7 +6,7 @@ use crate::engine::{SimTime, Span};
 use crate::metrics::air::{AirRecord, RobotAir, Waits};
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, SECONDS};
-use crate::statistics::{Estimator, Observation, Part, mean};
+use crate::statistics::{Estimator, Observation, Part, mean_value};
 
 /// A time of a robot.
 type Time = fn(&RobotAir) -> Span;
@@ -131,7 +131,7 @@ fn goodput_bps(record: &TrialRecord) -> Option<f64> {
 fn share_of_time(record: &TrialRecord, time: Time) -> Option<f64> {
     let all = record.simulated.as_secs();
     let shares: Vec<f64> = robots(record).iter().map(|robot| time(robot).as_secs() / all).collect();
-    (all > 0.0).then(|| mean(&shares).value).flatten()
+    (all > 0.0).then(|| mean_value(&shares)).flatten()
 }
 
 /// Mean over frames that went on air.
@@ -152,7 +152,7 @@ fn energy_j(record: &TrialRecord) -> Option<f64> {
     let each: Vec<f64> = robots(record).iter().map(|robot| robot.energy.iter().sum()).collect();
     each.iter()
         .any(|energy| *energy > 0.0)
-        .then(|| mean(&each).value)
+        .then(|| mean_value(&each))
         .flatten()
 }
 

@@ -4,7 +4,7 @@ use super::figure::Better;
 use super::registry::Registry;
 use crate::metrics::unit::DIMENSIONLESS;
 use crate::metrics::volume::TrafficRow;
-use crate::statistics::{Estimator, gini, mean, quantile};
+use crate::statistics::{Estimator, gini, mean_value, quantile};
 
 /// Bytes of a row of traffic.
 type Bytes = fn(&TrafficRow) -> u64;
@@ -52,7 +52,7 @@ fn traffic(registry: &mut Registry, prefix: &str, topic: &str, counts: impl Fn(&
             registry.add_plain(&key, &name, kind, move |record| {
                 let mut robots = record.bytes_per_step(|row| u64::from(counts(row)) * bytes(row));
                 let Some(q) = q else {
-                    return mean(&robots).value;
+                    return mean_value(&robots);
                 };
                 robots.sort_by(f64::total_cmp);
                 quantile(&robots, q)

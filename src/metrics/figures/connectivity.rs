@@ -4,7 +4,7 @@ use super::figure::Better;
 use super::registry::Registry;
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::DIMENSIONLESS;
-use crate::statistics::{Estimator, mean};
+use crate::statistics::{Estimator, mean_value};
 
 pub(super) fn declare(registry: &mut Registry) {
     let share = (DIMENSIONLESS, Better::Higher, Estimator::Share);
@@ -26,5 +26,5 @@ pub(super) fn declare(registry: &mut Registry) {
 fn neighbours(record: &TrialRecord) -> Option<f64> {
     let samples = record.connectivity.iter().filter(|sample| sample.components > 0);
     let seen: Vec<f64> = samples.map(|sample| sample.neighbours).collect();
-    mean(&seen).value
+    mean_value(&seen)
 }

@@ -117,6 +117,11 @@ fn restriction(samples: &[Sample]) -> Option<f64> {
         let times = sample.times.iter().map(|seen| (seen.time, !seen.happened));
         times.chain(alone.map(|value| (value, sample.is_censored)))
     });
+    longest_cut_off(seen)
+}
+
+/// The longest of what was `seen`, each with whether it was cut off, if it was.
+pub(super) fn longest_cut_off(seen: impl Iterator<Item = (f64, bool)>) -> Option<f64> {
     let longest = seen.max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     longest.filter(|(_, is_cut_off)| *is_cut_off).map(|(time, _)| time)
 }

@@ -19,11 +19,13 @@ mod mission;
 mod pairs;
 mod radio;
 mod registry;
+mod samples;
 
 pub use detection::{detection_times, mistake_durations};
 pub use exemplars::{Exemplars, Told};
 pub use figure::{Better, COMPLETION, Figure, Sample, parts, pool};
 pub use registry::{Estimated, Registry};
+pub use samples::{Pooled, Samples};
 
 pub(super) use gossip::Pairs;
 pub(super) use healing::mending;

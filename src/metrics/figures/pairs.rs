@@ -2,7 +2,7 @@
 
 use super::registry::Registry;
 use crate::metrics::pairs::{MEASURES, PairRecord};
-use crate::statistics::{Estimator, mean};
+use crate::statistics::{Estimator, mean_value};
 
 pub(super) fn declare(registry: &mut Registry) {
     for (place, measure) in MEASURES.iter().enumerate() {
@@ -12,7 +12,7 @@ pub(super) fn declare(registry: &mut Registry) {
                 &format!("pairs.{}", measure.key),
                 measure.name,
                 (measure.unit, measure.better, Estimator::Mean),
-                move |record| mean(&record.pairs.iter().filter_map(value).collect::<Vec<f64>>()).value,
+                move |record| mean_value(&record.pairs.iter().filter_map(value).collect::<Vec<f64>>()),
             )
             .list();
     }

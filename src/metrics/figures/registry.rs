@@ -2,7 +2,8 @@
 
 use std::rc::Rc;
 
-use super::figure::{Better, Figure, Sample, pool};
+use super::figure::{Better, Figure, Sample};
+use super::samples::Samples;
 use crate::metrics::noted_figure::NotedFigure;
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::SECONDS;
@@ -59,24 +60,25 @@ impl Registry {
         self.entries.iter().map(|entry| (entry.reading)(record)).collect()
     }
 
-    /// The figures, each with what all trials tell of it: `samples` has a list of those for each figure, in order.
-    #[must_use]
-    pub fn estimate(&self, samples: Vec<Vec<Sample>>) -> Vec<Estimated<'_>> {
-        let estimated = self.entries.iter().zip(samples).map(|(entry, mut samples)| {
-            let lasting = pool(&mut samples).unwrap_or_default();
-            let cut_off = match entry.figure.estimator {
-                Estimator::Times => lasting.cut_off,
-                _ => samples.iter().filter(|sample| sample.is_censored).count() as u64,
-            };
+    /// The figures, each with what all trials tell of it: `samples` has that of each figure, in order.
+    ///
+    /// # Panics
+    /// If it has fewer figures.
+    pub fn estimate<'a>(&'a self, samples: &'a Samples) -> impl Iterator<Item = Estimated<'a>> {
+        self.entries.iter().enumerate().map(|(place, entry)| {
+            let pooled = samples.of(place);
+            let lasting = pooled.lasting.unwrap_or_default();
             Estimated {
                 figure: &entry.figure,
                 is_listed: entry.is_listed,
-                estimate: entry.figure.estimate(&samples),
-                cut_off,
+                estimate: pooled.estimate(&entry.figure),
+                cut_off: match entry.figure.estimator {
+                    Estimator::Times => lasting.cut_off,
+                    _ => pooled.cut_off(),
+                },
                 restricted_to: lasting.restricted_to,
             }
-        });
-        estimated.collect()
+        })
     }
 
     /// Adds a figure, read off a trial by `reading`. It stands in the general list of summaries and reports, and among the figures that

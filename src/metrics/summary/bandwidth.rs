@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{DIMENSIONLESS, Unit};
 use crate::metrics::volume::{TrafficRow, Volume};
-use crate::statistics::{Estimate, mean, quantile};
+use crate::spool::{Columns, Scratch};
+use crate::statistics::{Estimate, mean, mean_value, quantile};
 
 use super::estimates::Figures;
 use super::quantity::{Named, Quantity};
@@ -76,34 +77,119 @@ pub struct LoadImbalance {
     pub unit: Unit,
 }
 
-impl Bandwidth {
-    pub(super) fn of(topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Self {
-        let of_role = |role| Directions::of(records, |row| usize::from(row.role) == role);
-        Self {
-            total: Directions::of(records, |_| true),
-            by_topic: Named::of(topics.iter().copied(), |topic| TopicBandwidth::of(records, topic)),
-            by_role: Named::of(roles.iter().copied(), of_role),
+/// Bytes of a row of traffic.
+type Bytes = fn(&TrafficRow) -> u64;
+
+/// What [`Directions`] are of, in order.
+const WAYS: [Bytes; 4] = [
+    |row| row.sent.bytes(),
+    |row| row.received.bytes(),
+    |row| row.sent.payload_bytes,
+    |row| row.received.payload_bytes,
+];
+
+/// Whose bytes are counted.
+#[derive(Clone, Copy)]
+enum Whose {
+    All,
+    Topic(usize),
+    Role(usize),
+}
+
+impl Whose {
+    fn has(self, row: &TrafficRow) -> bool {
+        match self {
+            Self::All => true,
+            Self::Topic(topic) => usize::from(row.topic) == topic,
+            Self::Role(role) => usize::from(row.role) == role,
         }
     }
 }
 
-impl TopicBandwidth {
-    fn of(records: &[TrialRecord], topic: usize) -> Self {
-        let is_its = |row: &TrafficRow| usize::from(row.topic) == topic;
-        let sent = || {
-            records
-                .iter()
-                .flat_map(|record| &record.traffic)
-                .filter(|row| is_its(row))
-                .map(|row| row.sent)
-        };
-        let headers: u64 = sent().map(|volume| volume.header_bytes).sum();
-        let bytes: u64 = sent().map(Volume::bytes).sum();
+/// What robots carried, over the trials that were counted: every [`Spread`] is a column.
+pub(super) struct Loads {
+    counted: Vec<(Whose, Bytes)>,
+    /// A row a robot and trial.
+    robots: Columns,
+    /// A row a trial: the mean of its robots.
+    means: Columns,
+    /// What was sent on each topic.
+    sent: Vec<Volume>,
+}
+
+impl Loads {
+    /// None yet, of so many topics and roles.
+    pub fn new(topics: usize, roles: usize) -> Self {
+        let ways = |whose: Whose| WAYS.map(|bytes| (whose, bytes));
+        let mut counted = ways(Whose::All).to_vec();
+        for topic in (0..topics).map(Whose::Topic) {
+            counted.extend(ways(topic));
+            counted.push((topic, lost_bytes));
+        }
+        counted.extend((0..roles).map(Whose::Role).flat_map(ways));
+        let columns = || Columns::new(counted.len(), &Scratch::default());
         Self {
-            directions: Directions::of(records, is_its),
-            lost_bytes_per_step: Spread::of(records, |row| u64::from(is_its(row)) * lost_bytes(row)),
+            robots: columns(),
+            means: columns(),
+            sent: vec![Volume::default(); topics],
+            counted,
+        }
+    }
+
+    /// Takes in a trial.
+    pub fn count(&mut self, record: &TrialRecord) {
+        let carried = self
+            .counted
+            .iter()
+            .map(|(whose, bytes)| record.bytes_per_step(|row| if whose.has(row) { bytes(row) } else { 0 }));
+        let carried: Vec<Vec<f64>> = carried.collect();
+        for robot in 0..record.robots.len() {
+            self.robots.push(carried.iter().map(|robots| robots[robot]));
+        }
+        if !record.robots.is_empty() {
+            self.means.push(carried.iter().filter_map(|robots| mean_value(robots)));
+        }
+        for row in &record.traffic {
+            if let Some(sum) = self.sent.get_mut(usize::from(row.topic)) {
+                sum.frames += row.sent.frames;
+                sum.payload_bytes += row.sent.payload_bytes;
+                sum.header_bytes += row.sent.header_bytes;
+            }
+        }
+    }
+
+    fn spread(&self, column: usize) -> Spread {
+        let mut pooled = self.robots.column(column);
+        pooled.sort_unstable_by(f64::total_cmp);
+        Spread {
+            min: pooled.first().copied(),
+            median: quantile(&pooled, 0.5),
+            p95: quantile(&pooled, 0.95),
+            max: pooled.last().copied(),
+            mean: mean(&self.means.column(column)),
+            unit: "B/step".into(),
+        }
+    }
+
+    /// From column number `first` on.
+    fn directions(&self, first: usize) -> Directions {
+        let [tx, rx, tx_payload, rx_payload] = [0, 1, 2, 3].map(|way| self.spread(first + way));
+        Directions {
+            tx_bytes_per_step: tx,
+            rx_bytes_per_step: rx,
+            tx_payload_bytes_per_step: tx_payload,
+            rx_payload_bytes_per_step: rx_payload,
+        }
+    }
+
+    fn topic(&self, topic: usize, first: usize) -> TopicBandwidth {
+        let sent = self.sent[topic];
+        let bytes = sent.bytes();
+        TopicBandwidth {
+            directions: self.directions(first),
+            lost_bytes_per_step: self.spread(first + WAYS.len()),
             header_share: Quantity {
-                value: (bytes > 0).then(|| headers as f64 / bytes as f64),
+                value: (bytes > 0).then(|| sent.header_bytes as f64 / bytes as f64),
                 unit: DIMENSIONLESS.into(),
             },
         }
@@ -114,33 +200,17 @@ fn lost_bytes(row: &TrafficRow) -> u64 {
     row.lost.into_iter().map(Volume::bytes).sum()
 }
 
-impl Directions {
-    /// Of the rows that `counts` accepts.
-    fn of(records: &[TrialRecord], counts: impl Fn(&TrafficRow) -> bool) -> Self {
-        let spread = |bytes: fn(&TrafficRow) -> u64| Spread::of(records, |row| u64::from(counts(row)) * bytes(row));
+impl Bandwidth {
+    /// By these names of the topics and roles of `loads`, whose columns are those of all, of topics and of roles.
+    pub(super) fn of(topics: &[&str], roles: &[&str], loads: &Loads) -> Self {
+        let a_topic = WAYS.len() + 1;
+        let of_role = |role: usize| loads.directions(WAYS.len() * (role + 1) + topics.len() * a_topic);
         Self {
-            tx_bytes_per_step: spread(|row| row.sent.bytes()),
-            rx_bytes_per_step: spread(|row| row.received.bytes()),
-            tx_payload_bytes_per_step: spread(|row| row.sent.payload_bytes),
-            rx_payload_bytes_per_step: spread(|row| row.received.payload_bytes),
-        }
-    }
-}
-
-impl Spread {
-    /// Of each robot's sum of `bytes` over its rows.
-    fn of(records: &[TrialRecord], bytes: impl Fn(&TrafficRow) -> u64) -> Self {
-        let trials: Vec<Vec<f64>> = records.iter().map(|record| record.bytes_per_step(&bytes)).collect();
-        let means: Vec<f64> = trials.iter().filter_map(|robots| mean(robots).value).collect();
-        let mut pooled = trials.concat();
-        pooled.sort_by(f64::total_cmp);
-        Self {
-            min: pooled.first().copied(),
-            median: quantile(&pooled, 0.5),
-            p95: quantile(&pooled, 0.95),
-            max: pooled.last().copied(),
-            mean: mean(&means),
-            unit: "B/step".into(),
+            total: loads.directions(0),
+            by_topic: Named::of(topics.iter().copied(), |topic| {
+                loads.topic(topic, WAYS.len() + topic * a_topic)
+            }),
+            by_role: Named::of(roles.iter().copied(), of_role),
         }
     }
 }

@@ -2,9 +2,8 @@
 
 use super::quantity::{Lasted, Measured};
 use crate::metrics::figures::Estimated;
-use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::SECONDS;
-use crate::statistics::{Estimate, Estimator};
+use crate::statistics::Estimate;
 
 /// The figures of a protocol over the trials to be summarised: the ones that comparisons show.
 pub(super) struct Figures<'a>(pub Vec<Estimated<'a>>);
@@ -39,9 +38,4 @@ impl Figures<'_> {
             unit: SECONDS.into(),
         }
     }
-}
-
-/// The mean of whole numbers over trials.
-pub(super) fn mean_count(records: &[TrialRecord], count: impl Fn(&TrialRecord) -> f64) -> Estimate {
-    Estimator::Count.estimate(&records.iter().map(|record| [count(record), 1.0]).collect::<Vec<_>>())
 }

@@ -7,9 +7,9 @@ use crate::metrics::episode::{FaultKind, HealingEpisode};
 use crate::metrics::figures::mending;
 use crate::metrics::record::TrialRecord;
 use crate::metrics::unit::{SECONDS, Unit};
-use crate::statistics::{Estimate, Estimator, Observation, Part, Times, median_survival, pseudo_values};
+use crate::spool::{Columns, Scratch};
+use crate::statistics::{Estimate, Estimator, Observation, Part, Times, median_survival, pseudo_values_in_a_row};
 
-use super::estimates::mean_count;
 use super::quantity::{Lasted, Measured, Named};
 
 /// What failed.
@@ -65,86 +65,151 @@ pub struct HealingTime {
     pub unit: Unit,
 }
 
+/// What failed, over the trials that were counted.
+#[derive(Debug, Default)]
+pub(super) struct Failed {
+    /// Robots of each trial.
+    robots: Vec<f64>,
+    by_role: Vec<u64>,
+    links: u64,
+}
+
+impl Failed {
+    /// Takes in a trial.
+    pub fn count(&mut self, record: &TrialRecord) {
+        self.robots.push(record.failed_robots().len() as f64);
+        for fault in &record.faults {
+            let FaultKind::Robot { role, .. } = fault.kind else {
+                self.links += 1;
+                continue;
+            };
+            let role = usize::from(role);
+            self.by_role.resize(self.by_role.len().max(role + 1), 0);
+            self.by_role[role] += 1;
+        }
+    }
+}
+
 impl FaultSummary {
-    /// What failed in `records`, by these names of `roles`; `None` if nothing did.
-    pub(super) fn of(roles: &[&str], records: &[TrialRecord]) -> Option<Self> {
-        let failures_of = |wanted: usize| {
-            let kinds = records
-                .iter()
-                .flat_map(|record| &record.faults)
-                .map(|fault| &fault.kind);
-            kinds
-                .filter(|kind| matches!(kind, FaultKind::Robot { role, .. } if usize::from(*role) == wanted))
-                .count() as u64
-        };
-        let all = records.iter().flat_map(|record| &record.faults);
-        let links = all
-            .filter(|fault| !matches!(fault.kind, FaultKind::Robot { .. }))
-            .count() as u64;
-        records.iter().any(|record| !record.faults.is_empty()).then(|| Self {
+    /// What `failed`, by these names of `roles`; `None` if nothing did.
+    pub(super) fn of(roles: &[&str], failed: &Failed) -> Option<Self> {
+        let robots = failed.robots.iter().map(|robots| [*robots, 1.0]);
+        (failed.links > 0 || !failed.by_role.is_empty()).then(|| Self {
             robots: Measured {
-                estimate: mean_count(records, |record| record.failed_robots().len() as f64),
+                estimate: Estimator::Count.estimate(&robots.collect::<Vec<_>>()),
                 unit: "robots".into(),
             },
-            by_role: Named::of(roles.iter().copied(), failures_of),
-            links,
+            by_role: Named::of(roles.iter().copied(), |role| {
+                failed.by_role.get(role).copied().unwrap_or(0)
+            }),
+            links: failed.links,
         })
     }
 }
 
-/// A failure and the end of its trial.
-type Case<'a> = (&'a HealingEpisode, SimTime);
+/// What failures did, over the trials that were counted.
+#[derive(Debug)]
+pub(super) struct Healings {
+    harmless: u64,
+    total: Harm,
+    by_role: Vec<Harm>,
+    /// Of those alone, and of those that overlapped.
+    by_overlap: [Harm; 2],
+}
+
+impl Healings {
+    /// None yet, of so many topics and roles.
+    pub fn new(topics: usize, roles: usize) -> Self {
+        Self {
+            harmless: 0,
+            total: Harm::new(topics),
+            by_role: (0..roles).map(|_| Harm::new(topics)).collect(),
+            by_overlap: [0; 2].map(|_| Harm::new(topics)),
+        }
+    }
+
+    /// Takes in a trial.
+    pub fn count(&mut self, record: &TrialRecord) {
+        let (harmful, harmless): (Vec<_>, Vec<_>) = record.healing.iter().partition(|episode| episode.is_harmful());
+        self.harmless += harmless.len() as u64;
+        let count = |harm: &mut Harm, belongs: &dyn Fn(&HealingEpisode) -> bool| {
+            let own = harmful.iter().copied().filter(|episode| belongs(episode));
+            harm.count(&own.collect::<Vec<_>>(), record.simulated);
+        };
+        count(&mut self.total, &|_| true);
+        for (role, harm) in self.by_role.iter_mut().enumerate() {
+            count(harm, &|episode| usize::from(episode.role) == role);
+        }
+        for (place, harm) in self.by_overlap.iter_mut().enumerate() {
+            count(harm, &|episode| (episode.overlapping > 0) == (place == 1));
+        }
+    }
+}
+
+/// Failures that did harm, of the trials that have any: the others tell nothing.
+#[derive(Debug)]
+struct Harm {
+    topics: usize,
+    /// How long each was unmended, one trial after another.
+    times: Times,
+    /// How many each trial has.
+    counts: Vec<u32>,
+    /// Of those that each trial mended: how many, the way meanwhile, the frames on each topic.
+    mended: Columns,
+}
+
+impl Harm {
+    fn new(topics: usize) -> Self {
+        Self {
+            topics,
+            times: Times::default(),
+            counts: Vec::new(),
+            mended: Columns::new(2 + topics, &Scratch::default()),
+        }
+    }
+
+    /// Takes in those of a trial that ended at `end`.
+    fn count(&mut self, episodes: &[&HealingEpisode], end: SimTime) {
+        if episodes.is_empty() {
+            return;
+        }
+        self.counts.push(episodes.len() as u32);
+        self.times.extend(episodes.iter().map(|episode| mending(episode, end)));
+        let mended = || episodes.iter().filter(|episode| episode.healed_at.is_some());
+        let sum = |figure: &dyn Fn(&HealingEpisode) -> f64| mended().fold(0.0, |sum, episode| sum + figure(episode));
+        let frames = (0..self.topics).map(|topic| sum(&|episode| episode.frames[topic] as f64));
+        let first = [mended().count() as f64, sum(&|episode| episode.distance_m)];
+        self.mended.push(first.into_iter().chain(frames));
+    }
+}
 
 impl HealingSummary {
-    /// How targets healed in `records`, by these names; `None` if no robot failed that worked for a target.
-    pub(super) fn of<'a>(topics: &[&str], roles: &[&str], records: &'a [TrialRecord]) -> Option<Self> {
-        let cases = || {
-            records
-                .iter()
-                .flat_map(|record| record.healing.iter().map(|episode| (episode, record.simulated)))
-        };
-        let harmful = |belongs: &dyn Fn(&HealingEpisode) -> bool| {
-            let of_trial = |record: &'a TrialRecord| -> Vec<Case> {
-                let episodes = record.healing.iter().map(|episode| (episode, record.simulated));
-                episodes
-                    .filter(|(episode, _)| episode.is_harmful() && belongs(episode))
-                    .collect()
-            };
-            Healed::of(topics, &records.iter().map(of_trial).collect::<Vec<_>>())
-        };
-        cases().next()?;
-        Some(Self {
-            total: harmful(&|_| true),
-            harmless: cases().filter(|(episode, _)| !episode.is_harmful()).count() as u64,
-            by_role: Named::of(roles.iter().copied(), |role| {
-                harmful(&|episode| usize::from(episode.role) == role)
-            }),
-            by_overlap: Named::of(["alone", "overlapping"], |place| {
-                harmful(&|episode| (episode.overlapping > 0) == (place == 1))
-            }),
+    /// How targets healed, by these names; `None` if no robot failed that worked for a target.
+    pub(super) fn of(topics: &[&str], roles: &[&str], healings: &Healings) -> Option<Self> {
+        let healed = |harm: &Harm| Healed::of(topics, harm);
+        let total = healed(&healings.total);
+        (total.failures + healings.harmless > 0).then(|| Self {
+            total,
+            harmless: healings.harmless,
+            by_role: Named::of(roles.iter().copied(), |role| healed(&healings.by_role[role])),
+            by_overlap: Named::of(["alone", "overlapping"], |place| healed(&healings.by_overlap[place])),
         })
     }
 }
 
 impl Healed {
-    fn of(topics: &[&str], trials: &[Vec<Case>]) -> Self {
-        let times: Vec<Times> = trials
-            .iter()
-            .map(|cases| cases.iter().map(|(episode, end)| mending(episode, *end)).collect())
-            .collect();
-        let observations: Vec<Observation> = times.iter().flat_map(Times::iter).collect();
-        let of_trial = |cases: &Vec<Case>, figure: &dyn Fn(&HealingEpisode) -> f64| -> Part {
-            let mended = cases.iter().filter(|(episode, _)| episode.healed_at.is_some());
-            mended.fold([0.0; 2], |[sum, count], (episode, _)| {
-                [sum + figure(episode), count + 1.0]
-            })
+    fn of(topics: &[&str], harm: &Harm) -> Self {
+        let observations: Vec<Observation> = harm.times.iter().collect();
+        let counts = harm.mended.column(0);
+        let measured = |column: usize, unit: &'static str| {
+            let sums = harm.mended.column(column).into_iter();
+            let parts: Vec<Part> = sums.zip(&counts).map(|(sum, count)| [sum, *count]).collect();
+            Measured {
+                estimate: Estimator::Count.estimate(&parts),
+                unit: unit.into(),
+            }
         };
-        let measured = |figure: &dyn Fn(&HealingEpisode) -> f64, unit: &'static str| Measured {
-            estimate: Estimator::Count
-                .estimate(&trials.iter().map(|cases| of_trial(cases, figure)).collect::<Vec<_>>()),
-            unit: unit.into(),
-        };
-        let (parts, lasting) = pseudo_values(&times);
+        let (parts, lasting) = pseudo_values_in_a_row(&harm.times, harm.counts.iter().map(|count| *count as usize));
         Self {
             failures: observations.len() as u64,
             healed: observations.iter().filter(|seen| seen.happened).count() as u64,
@@ -158,10 +223,8 @@ impl Healed {
                 },
                 unit: SECONDS.into(),
             },
-            distance: measured(&|episode| episode.distance_m, "m"),
-            frames: Named::of(topics.iter().copied(), |topic| {
-                measured(&|episode| episode.frames[topic] as f64, "frames")
-            }),
+            distance: measured(1, "m"),
+            frames: Named::of(topics.iter().copied(), |topic| measured(2 + topic, "frames")),
         }
     }
 }

@@ -34,12 +34,28 @@ pub struct Fates {
     pub lost: Named<u64>,
 }
 
+/// Frames by topic, over the trials that were counted.
+#[derive(Debug, Default)]
+pub(super) struct Ledger(Vec<TopicFates>);
+
+impl Ledger {
+    /// Takes in a trial.
+    pub fn count(&mut self, record: &TrialRecord) {
+        let topics = self.0.len().max(record.ledger.len());
+        self.0.resize_with(topics, TopicFates::default);
+        for (sum, fates) in self.0.iter_mut().zip(&record.ledger) {
+            sum.add(fates);
+        }
+    }
+}
+
 impl Frames {
-    pub(super) fn of(topics: &[&str], records: &[TrialRecord]) -> Self {
-        let all = records.iter().flat_map(|record| &record.ledger);
-        let of_topic = |topic: usize| Fates::of(records.iter().filter_map(|record| record.ledger.get(topic)));
+    pub(super) fn of(topics: &[&str], ledger: &Ledger) -> Self {
+        let mut total = TopicFates::default();
+        ledger.0.iter().for_each(|fates| total.add(fates));
+        let of_topic = |topic: usize| Fates::of(ledger.0.get(topic).unwrap_or(&TopicFates::default()));
         Self {
-            total: Fates::of(all),
+            total: Fates::of(&total),
             by_topic: Named::of(topics.iter().copied(), of_topic),
             unit: "frames".into(),
         }
@@ -47,9 +63,7 @@ impl Frames {
 }
 
 impl Fates {
-    fn of<'a>(ledgers: impl Iterator<Item = &'a TopicFates>) -> Self {
-        let mut sum = TopicFates::default();
-        ledgers.for_each(|fates| sum.add(fates));
+    fn of(sum: &TopicFates) -> Self {
         Self {
             offered: sum.offered,
             delivered: sum.delivered,

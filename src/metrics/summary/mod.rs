@@ -28,15 +28,14 @@ pub use spread::{Duplicates, SpreadSummary, SpreadTime};
 pub use trials::Trials;
 
 use serde::{Deserialize, Serialize};
-use xxhash_rust::xxh3::xxh3_128;
 
 use crate::engine::Span;
 
-use super::figures::{Registry, Sample, completion};
+use super::figures::Registry;
 use super::latency::LatencyHistogram;
-use super::record::{Outcome, TrialRecord};
+use super::record::TrialRecord;
 use super::unit::{DIMENSIONLESS, SECONDS, STEPS};
-use crate::statistics::{Estimate, Observation, median_survival};
+use crate::statistics::{Estimate, median_survival};
 use estimates::Figures;
 
 /// The figures of all trials of one scenario.
@@ -48,7 +47,7 @@ pub struct Summary {
     pub trials: u64,
     /// Trials that completed their mission.
     pub completed: u64,
-    /// Digest of the trials' digests, in order: 32 hexadecimal digits.
+    /// XXH3-128 of the trials' digests, in order, each as 16 bytes, least significant first: 32 hexadecimal digits.
     pub digest: String,
     /// Share of the trials with a mission that completed it, with Wilson's interval.
     pub completion_ratio: Measured,
@@ -150,64 +149,54 @@ impl Summary {
     /// As [`of`](Self::of), by the figures of `registry`, which has at least those that desim ships for these topics.
     #[must_use]
     pub fn by(registry: &Registry, scenario: &str, topics: &[&str], roles: &[&str], records: &[TrialRecord]) -> Self {
-        let mut trials = Trials::new(registry);
+        let mut trials = Trials::new(registry, topics, roles);
         for record in records {
-            trials.add(record.clone());
+            trials.add(record);
         }
-        trials.summary(scenario, topics, roles)
+        trials.summary(scenario)
     }
 
-    fn put_together(trials: Trials, scenario: &str, topics: &[&str], roles: &[&str]) -> Self {
-        let Trials {
-            registry,
-            samples,
-            records,
-            failed,
-            beliefs,
-            radios,
-        } = trials;
-        let lambda2_min = LeastConnectivity::least(registry, &samples);
-        let figures = &Figures(registry.estimate(samples));
-        let records = &records[..];
-        let completed = records
-            .iter()
-            .filter(|record| matches!(record.outcome, Outcome::Completed { .. }))
-            .count() as u64;
+    fn put_together(trials: &Trials, scenario: &str) -> Self {
+        let Trials { topics, roles, .. } = *trials;
+        let figures = &Figures(trials.registry.estimate(&trials.samples).collect());
         Self {
             scenario: scenario.to_owned(),
-            trials: records.len() as u64,
-            completed,
-            digest: digest(records),
+            trials: trials.count,
+            completed: trials.completed,
+            digest: format!("{:032x}", trials.digest.digest128()),
             completion_ratio: figures.measured("completion_ratio", DIMENSIONLESS),
-            steps_to_completion: StepsToCompletion::of(records),
-            missed: MissedSummary::put_together(&failed),
-            frames: Frames::of(topics, records),
+            steps_to_completion: StepsToCompletion {
+                median: median_survival(&trials.missions),
+                unit: STEPS.into(),
+            },
+            missed: MissedSummary::put_together(&trials.failed),
+            frames: Frames::of(topics, &trials.ledger),
             delivery_ratio: figures.measured("delivery_ratio", DIMENSIONLESS),
-            latency_s: Latency::of(figures, records),
+            latency_s: Latency::of(figures, &trials.latency),
             goodput_bps: figures
                 .has("goodput_bps")
                 .then(|| figures.measured("goodput_bps", "bit/s")),
-            radio: RadioSummary::of(figures, &radios),
-            bandwidth: Bandwidth::of(topics, roles, records),
+            radio: RadioSummary::of(figures, &trials.radios),
+            bandwidth: Bandwidth::of(topics, roles, &trials.loads),
             load_imbalance: LoadImbalance::of(figures),
             lambda2_min: LeastConnectivity {
                 estimate: figures.estimate("lambda2_min"),
-                min: lambda2_min,
+                min: LeastConnectivity::least(trials),
                 unit: DIMENSIONLESS.into(),
             },
             connected_share: figures.measured("connected_share", DIMENSIONLESS),
             robots_used: figures.measured("robots_used", "robots"),
-            faults: FaultSummary::of(roles, records),
-            healing: HealingSummary::of(topics, roles, records),
-            spread: SpreadSummary::of(figures, records),
+            faults: FaultSummary::of(roles, &trials.faults),
+            healing: HealingSummary::of(topics, roles, &trials.healings),
+            spread: SpreadSummary::of(figures, &trials.rumors),
             duplicates: Duplicates::of(topics, figures),
-            detection: Detection::of(figures, &beliefs),
+            detection: Detection::of(figures, &trials.beliefs),
             steps: Quantity {
-                value: records.iter().map(|record| record.steps).sum(),
+                value: trials.steps,
                 unit: STEPS.into(),
             },
             simulated_s: Quantity {
-                value: records.iter().map(|record| record.simulated.as_secs()).sum(),
+                value: trials.simulated_s,
                 unit: SECONDS.into(),
             },
             figures: Listed::all(figures),
@@ -215,28 +204,8 @@ impl Summary {
     }
 }
 
-/// XXH3-128 of the trials' digests, each as 16 bytes, least significant first.
-fn digest(records: &[TrialRecord]) -> String {
-    let bytes: Vec<u8> = records.iter().flat_map(|record| record.digest.to_le_bytes()).collect();
-    format!("{:032x}", xxh3_128(&bytes))
-}
-
-impl StepsToCompletion {
-    fn of(records: &[TrialRecord]) -> Self {
-        let observations: Vec<Observation> = records.iter().filter_map(completion).collect();
-        Self {
-            median: median_survival(&observations),
-            unit: STEPS.into(),
-        }
-    }
-}
-
 impl Latency {
-    fn of(figures: &Figures, records: &[TrialRecord]) -> Self {
-        let mut all = LatencyHistogram::default();
-        for record in records {
-            all.merge(&record.latency);
-        }
+    fn of(figures: &Figures, all: &LatencyHistogram) -> Self {
         let quantile = |q| all.quantile(q).map(Span::as_secs);
         Self {
             p50: quantile(0.5),
@@ -249,9 +218,12 @@ impl Latency {
 }
 
 impl LeastConnectivity {
-    fn least(registry: &Registry, samples: &[Vec<Sample>]) -> Option<f64> {
-        let place = registry.figures().position(|figure| figure.key == "lambda2_min")?;
-        samples[place].iter().filter_map(Sample::value).min_by(f64::total_cmp)
+    fn least(trials: &Trials) -> Option<f64> {
+        let mut figures = trials.registry.figures();
+        let pooled = trials
+            .samples
+            .of(figures.position(|figure| figure.key == "lambda2_min")?);
+        pooled.values().map(|(_, value, _)| value).min_by(f64::total_cmp)
     }
 }
 

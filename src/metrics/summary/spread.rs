@@ -33,35 +33,48 @@ pub struct SpreadTime {
     pub unit: Unit,
 }
 
+/// How long rumours took, over the trials that were counted and had any.
+#[derive(Debug, Default)]
+pub(super) struct Rumors {
+    half: Vec<Observation>,
+    all: Vec<Observation>,
+}
+
+impl Rumors {
+    /// Takes in a trial.
+    pub fn count(&mut self, record: &TrialRecord) {
+        let Some(pairs) = Pairs::of(record) else { return };
+        let until = |wanted: usize| {
+            let time = pairs.times.get(wanted - 1).copied();
+            Observation {
+                time: time.unwrap_or(pairs.end).as_secs(),
+                happened: time.is_some(),
+            }
+        };
+        self.half.push(until(pairs.count.div_ceil(2)));
+        self.all.push(until(pairs.count));
+    }
+}
+
 impl SpreadSummary {
-    /// How rumours spread in `records`; `None` if there were none.
-    pub(super) fn of(figures: &Figures, records: &[TrialRecord]) -> Option<Self> {
-        let trials: Vec<Pairs> = records.iter().filter_map(Pairs::of).collect();
-        (!trials.is_empty()).then(|| Self {
+    /// How `rumors` spread; `None` if there were none.
+    pub(super) fn of(figures: &Figures, rumors: &Rumors) -> Option<Self> {
+        (!rumors.all.is_empty()).then(|| Self {
             informed_ratio: figures.measured("spread.informed_ratio", DIMENSIONLESS),
-            time_to_half: SpreadTime::of(&trials, |count| count.div_ceil(2)),
-            time_to_all: SpreadTime::of(&trials, |count| count),
+            time_to_half: SpreadTime::of(&rumors.half),
+            time_to_all: SpreadTime::of(&rumors.all),
         })
     }
 }
 
 impl SpreadTime {
-    /// Until so many of all pairs were informed.
-    fn of(trials: &[Pairs], wanted: impl Fn(usize) -> usize) -> Self {
-        let observe = |trial: &Pairs| {
-            let time = trial.times.get(wanted(trial.count) - 1).copied();
-            Observation {
-                time: time.unwrap_or(trial.end).as_secs(),
-                happened: time.is_some(),
-            }
-        };
-        let observations: Vec<Observation> = trials.iter().map(observe).collect();
+    fn of(observations: &[Observation]) -> Self {
         let complete = observations.iter().all(|observation| observation.happened);
-        let times: Vec<f64> = observations.iter().map(|observation| observation.time).collect();
+        let times = observations.iter().map(|observation| observation.time);
         Self {
-            median: median_survival(&observations),
+            median: median_survival(observations),
             mean: if complete {
-                Estimator::Count.estimate(&times.iter().map(|&time| [time, 1.0]).collect::<Vec<_>>())
+                Estimator::Count.estimate(&times.map(|time| [time, 1.0]).collect::<Vec<_>>())
             } else {
                 Estimate::default()
             },

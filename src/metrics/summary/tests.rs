@@ -8,12 +8,13 @@ use crate::geometry::{Pose, Vec2};
 use crate::metrics::detection::{Cause, DetectionRecord, Missed, Suspicion};
 use crate::metrics::episode::{FaultEpisode, FaultKind};
 use crate::metrics::volume::TopicFates;
-use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Recorder, RumorSpread, RunEnd};
+use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Outcome, Recorder, RumorSpread, RunEnd};
 use crate::protocol::{MessageSize, Note, Role, Topic};
 use crate::radio::{LossCause, Reach};
 
 mod detection;
 mod listed;
+mod many;
 
 const TOPICS: [&str; 2] = ["status", "alarm"];
 const ROLES: [&str; 2] = ["free", "worker"];

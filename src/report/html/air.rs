@@ -49,7 +49,7 @@ pub fn by_distance(input: &PageInput) -> Option<Figure> {
     // No distance is below 0: their bits are in their order.
     let mut bands: BTreeMap<u64, Band> = BTreeMap::new();
     for band in input
-        .records
+        .records()
         .iter()
         .filter_map(|record| record.air.as_ref())
         .flat_map(|air| &air.bands)
@@ -126,7 +126,7 @@ pub fn by_distance(input: &PageInput) -> Option<Figure> {
             "Which share of the copies of frames that were offered {} was received, and the mean power of those that arrived with any, by how far their sender was \
              away: four bands from one distance to twice that, each drawn at its middle. Mind the logarithmic axis. A frame that found no room in its sender's queue is \
              left out.",
-            input.in_trials()
+            input.in_drawn()
         ),
         panels,
         key: Vec::new(),

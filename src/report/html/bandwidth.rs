@@ -47,7 +47,7 @@ struct Group<'a> {
 pub fn by_topic(input: &PageInput) -> Figure {
     let groups = |bytes: Bytes| {
         let of_topic = |topic: usize| {
-            let records = input.records.iter();
+            let records = input.records().iter();
             let values = records.flat_map(|record| {
                 record.bytes_per_step(|row| if usize::from(row.topic) == topic { bytes(row) } else { 0 })
             });
@@ -63,7 +63,7 @@ pub fn by_topic(input: &PageInput) -> Figure {
         "How many {UNIT}, each robot sent and received {}, topic by topic. The box holds the middle half of the robots, its \
          line is their median, its dashed line their mean; whiskers reach from the least to the most of any robot in any trial. A \
          broadcast counts once where it is sent and at every robot that hears it.",
-        input.in_trials()
+        input.in_drawn()
     );
     spread_figure(
         "bytes-by-topic",
@@ -81,7 +81,7 @@ pub fn by_role(input: &PageInput) -> Option<Figure> {
     let groups = |bytes: Bytes| {
         let of_role = |role: usize| {
             let is_its = |row: &TrafficRow| usize::from(row.role) == role;
-            let values = input.records.iter().flat_map(|record| {
+            let values = input.records().iter().flat_map(|record| {
                 let all = record.bytes_per_step(|row| if is_its(row) { bytes(row) } else { 0 });
                 let rows = record.traffic.iter().filter(|row| is_its(row));
                 let mut robots: Vec<_> = rows.map(|row| row.robot.index()).collect();
@@ -99,7 +99,7 @@ pub fn by_role(input: &PageInput) -> Option<Figure> {
     let caption = format!(
         "How many {UNIT}, robots sent and received while in each role {}, as in the figure before. A robot counts in every role \
          that it was in, with what it carried meanwhile over all steps of its trial: roles add up to the whole.",
-        input.in_trials()
+        input.in_drawn()
     );
     let groups = WAYS.map(|(.., bytes)| groups(bytes));
     Some(spread_figure("bytes-by-role", "Bytes by role", caption, &groups))
@@ -182,14 +182,14 @@ pub fn headers(input: &PageInput) -> Figure {
         "headers, B/step and robot",
     ]);
     let robot_steps: f64 = input
-        .records
+        .records()
         .iter()
         .flat_map(|record| &record.robots)
         .map(|robot| robot.steps.max(1) as f64)
         .sum();
     let mut bars = Vec::new();
     for topic in 0..input.topics.len() {
-        let rows = input.records.iter().flat_map(|record| &record.traffic);
+        let rows = input.records().iter().flat_map(|record| &record.traffic);
         let (mut frames, mut payload, mut header) = (0, 0, 0);
         for row in rows.filter(|row| usize::from(row.topic) == topic) {
             frames += row.sent.frames;
@@ -250,7 +250,7 @@ pub fn headers(input: &PageInput) -> Figure {
             "What a robot sends on average {}, split into the bytes of the messages and of their headers, {of_frame} for each frame and {of_message} for \
              each message in it; the number is the share of headers. Small messages pay most for their headers: sending several in one \
              frame saves some of that.",
-            input.in_trials()
+            input.in_drawn()
         ),
         panels: vec![Panel::of_rows("", plot, input.topics.len()).unless_one(
             bars.iter().flat_map(|bar| [bar.1, bar.2]),

@@ -75,12 +75,12 @@ fn draw(
 
 /// λ₂ and the number of components over time.
 pub fn graph(input: &PageInput) -> Option<Figure> {
-    let lambda2 = over_time(input.records, |record| samples(record, |sample| Some(sample.lambda2)));
-    let components = over_time(input.records, |record| {
+    let lambda2 = over_time(input.records(), |record| samples(record, |sample| Some(sample.lambda2)));
+    let components = over_time(input.records(), |record| {
         samples(record, |sample| Some(f64::from(sample.components)))
     });
     lambda2.first()?;
-    let banded = input.records.len() > 1;
+    let banded = input.records().len() > 1;
     let marks = Marks::of(input);
     let mut table = DataTable::new(&HEAD);
     rows(&mut table, "λ₂", &lambda2);
@@ -170,7 +170,7 @@ pub fn roles(input: &PageInput) -> Option<Figure> {
     let mut changes = false;
     for role in 0..input.roles.len() {
         let count = |sample: &ConnectivitySample| sample.roles.get(role).map(|&robots| f64::from(robots));
-        let moments = over_time(input.records, |record| samples(record, count));
+        let moments = over_time(input.records(), |record| samples(record, count));
         if moments.iter().all(|moment| moment.spread.max == 0.0) {
             continue;
         }
@@ -178,7 +178,7 @@ pub fn roles(input: &PageInput) -> Option<Figure> {
         let ends = moments.iter().flat_map(|moment| [moment.spread.min, moment.spread.max]);
         changes |= one_value(ends).is_none();
         rows(&mut table, name, &moments);
-        let banded = input.records.len() > 1;
+        let banded = input.records().len() > 1;
         draw(
             &mut plot,
             name,

@@ -12,16 +12,16 @@ use super::data::over_by;
 use super::figure::{Figure, Panel};
 use super::names::Names;
 use super::table::DataTable;
-use crate::metrics::detection::{Cause, DetectionRecord, Verdict};
-use crate::metrics::summary::{Lasted, detection_times, mistake_durations};
+use crate::metrics::detection::{Cause, Verdict};
+use crate::metrics::summary::Lasted;
 use crate::protocol::detector::DetectorConfig;
 use crate::report::number;
-use crate::statistics::{Estimate, Times};
+use crate::statistics::Estimate;
 
 /// Suspicions by verdict and cause.
 pub fn suspicions(input: &PageInput) -> Option<Figure> {
     let mut counted: BTreeMap<(Verdict, Cause), u64> = BTreeMap::new();
-    for one in input.records.iter().flat_map(|record| &record.detection.suspicions) {
+    for one in input.records().iter().flat_map(|record| &record.detection.suspicions) {
         *counted.entry((one.verdict(), one.cause)).or_default() += 1;
     }
     counted.first_key_value()?;
@@ -54,7 +54,7 @@ pub fn suspicions(input: &PageInput) -> Option<Figure> {
             "Each time that a robot came to believe that another was down, {}: {} times in all. Rows say what to make of it, held against a truth that \
              robots never see: right if the other could not send; out of range, or the observer deaf, if that is what kept its statuses away; else a \
              mistake. Colours say what most of the missed statuses suffered.",
-            input.in_trials(),
+            input.in_drawn(),
             number::count(total)
         ),
         panels: vec![match table.rows.len() {
@@ -90,26 +90,20 @@ fn said(verdict: Verdict) -> &'static str {
 
 /// How long detection took, and how long mistakes lasted.
 pub fn times(input: &PageInput) -> Option<Figure> {
-    let times = |of: fn(&DetectionRecord) -> Times| {
-        input.records.iter().fold(Times::default(), |mut all, record| {
-            all.extend(of(&record.detection).iter());
-            all
-        })
-    };
     let both = [
         (
             "Detection time T_D",
             "time from a failure to its detection, s",
             "failures detected",
             "#0072b2",
-            times(detection_times),
+            input.trials.times("detection.detection_time_s"),
         ),
         (
             "Mistake duration T_M",
             "time from a mistake to trust, s",
             "mistakes over",
             "#d55e00",
-            times(mistake_durations),
+            input.trials.times("detection.mistake_duration_s"),
         ),
     ];
     let mut table = DataTable::new(&["of", "time, s", "share that took no longer, %"]);

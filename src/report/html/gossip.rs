@@ -49,8 +49,8 @@ impl Pairs {
 
 /// Who knew the rumours when; none without rumours.
 pub fn spread(input: &PageInput) -> Option<Figure> {
-    let trials: Vec<Pairs> = input.records.iter().filter_map(Pairs::of).collect();
-    let end = input.records.iter().map(|record| record.simulated).max()?.as_secs();
+    let trials: Vec<Pairs> = input.records().iter().filter_map(Pairs::of).collect();
+    let end = input.records().iter().map(|record| record.simulated).max()?.as_secs();
     trials.first()?;
     let last = trials.iter().filter_map(|pairs| pairs.times.last()).max();
     let all = trials.iter().all(|pairs| pairs.times.len() == pairs.count);

@@ -20,7 +20,7 @@ const HEIGHT: u32 = 460;
 
 /// Where the robots of the first trial ended, how they are linked and what they carried.
 pub fn traffic(input: &PageInput) -> Option<Figure> {
-    let record = input.records.first()?;
+    let record = input.records().first()?;
     record.robots.first()?;
     let loads = WAYS.map(|(.., bytes)| record.bytes_per_step(bytes));
     let mut table = DataTable::new(&["robot", "role", "x, m", "y, m", "sent, B/step", "received, B/step"]);

@@ -38,7 +38,7 @@ pub struct Marks {
 impl Marks {
     /// What happened in the trials of a page, for charts over seconds.
     pub fn of(input: &PageInput) -> Self {
-        let records = input.records;
+        let records = input.records();
         let mut rows = Vec::new();
         let mut lines = Vec::new();
         for what in What::ALL {
@@ -55,7 +55,7 @@ impl Marks {
             lines.clear();
         }
         let stretches = stretches(records);
-        let words = words(&rows, &lines, &stretches, records.len());
+        let words = words(&rows, &lines, &stretches, &any_of(input));
         Self {
             rows,
             lines,
@@ -194,7 +194,24 @@ impl Marks {
     }
 }
 
-fn words(rows: &[(What, Vec<Mark>)], lines: &[(What, f64)], stretches: &[([f64; 2], bool)], trials: usize) -> String {
+/// In which trials something is marked, and in which it is where it goes through the chart.
+fn any_of(input: &PageInput) -> [String; 2] {
+    match (input.drawn(), input.trials.count()) {
+        (Some([drawn, _]), _) => [
+            format!("in any of {drawn} trials, spread evenly"),
+            format!(" in all of these {drawn} trials"),
+        ],
+        (None, 1) => ["in the trial".to_owned(), String::new()],
+        (None, _) => ["in any of the trials".to_owned(), " in every trial".to_owned()],
+    }
+}
+
+fn words(
+    rows: &[(What, Vec<Mark>)],
+    lines: &[(What, f64)],
+    stretches: &[([f64; 2], bool)],
+    [any, every]: &[String; 2],
+) -> String {
     if rows.is_empty() {
         return String::new();
     }
@@ -217,14 +234,9 @@ fn words(rows: &[(What, Vec<Mark>)], lines: &[(What, f64)], stretches: &[([f64; 
     let mut words = format!(
         " Above the chart is marked when {}, {}{}.",
         marked.join("; "),
-        if trials > 1 {
-            "in any of the trials"
-        } else {
-            "in the trial"
-        },
+        any,
         if folded { ", the darker, the more at a time" } else { "" }
     );
-    let every = if trials > 1 { " in every trial" } else { "" };
     let mut through = Vec::new();
     if lines.iter().any(|(what, _)| *what == What::Fails) {
         through.push(format!("dotted where robots fail{every}"));

@@ -11,7 +11,7 @@ use super::marks::Marks;
 use super::names::Names;
 use super::table::{Cell, DataTable};
 use crate::metrics::comparison::{Comparison, Setting, Survival};
-use crate::metrics::{HealingEpisode, Outcome};
+use crate::metrics::figures::COMPLETION;
 use crate::report::missed::{self, Asked};
 use crate::report::number;
 use crate::statistics::{Observation, Step, survival_curve};
@@ -19,22 +19,14 @@ use crate::statistics::{Observation, Step, survival_curve};
 const COLOUR: &str = "#0072b2";
 /// More curves than this are drawn without their bands, which would cover each other.
 const MOST_BANDS: usize = 4;
+/// Steps of a curve, and marks on it, at most: more would only make the page long.
+const MOST_STEPS: usize = 1_000;
 /// Curves that colours alone tell apart.
 const DISTINCT: usize = 7;
 
 /// When missions were complete.
 pub fn completion(input: &PageInput) -> Option<Figure> {
-    let observed = input.records.iter().filter_map(|record| match record.outcome {
-        Outcome::Completed { step } => Some((step, true)),
-        Outcome::Censored => Some((record.steps, false)),
-        Outcome::NoMission => None,
-    });
-    let observations: Vec<Observation> = observed
-        .map(|(step, happened)| Observation {
-            time: step as f64,
-            happened,
-        })
-        .collect();
+    let observations = input.trials.values(COMPLETION);
     observations.first()?;
     let summary = input.summary;
     let median = number::estimate(&summary.steps_to_completion.median, number::figure);
@@ -85,17 +77,7 @@ fn capitalised(sentence: &str) -> String {
 
 /// When targets had their links again after a failure.
 pub fn healing(input: &PageInput) -> Option<Figure> {
-    let cases = input
-        .records
-        .iter()
-        .flat_map(|record| record.healing.iter().map(move |episode| (episode, record.simulated)));
-    let harmful = cases.filter(|(episode, _): &(&HealingEpisode, _)| episode.is_harmful());
-    let observations: Vec<Observation> = harmful
-        .map(|(episode, end)| Observation {
-            time: episode.healed_at.unwrap_or(end).since(episode.failed_at).as_secs(),
-            happened: episode.healed_at.is_some(),
-        })
-        .collect();
+    let observations: Vec<Observation> = input.trials.times("healing.unmended_s").iter().collect();
     observations.first()?;
     let total = &input.summary.healing.as_ref()?.total;
     let cut_off = if total.healed < total.failures {
@@ -220,7 +202,14 @@ fn curve(
     what: &str,
     marks: &Marks,
 ) -> Figure {
-    let steps = survival_curve(observations.iter().copied());
+    let all = survival_curve(observations.iter().copied());
+    let caption = if all.len() > MOST_STEPS {
+        let [all, drawn] = [all.len(), MOST_STEPS].map(|steps| number::count(steps as u64));
+        format!("{caption} Of the {all} steps of the curve {drawn} are drawn and listed, spread evenly.")
+    } else {
+        caption
+    };
+    let steps = few(all);
     let end = observations
         .iter()
         .map(|observation| observation.time)
@@ -232,15 +221,9 @@ fn curve(
         "low, %",
         "high, %",
     ]);
-    let at_risk = |time: f64| {
-        observations
-            .iter()
-            .filter(|observation| observation.time >= time)
-            .count() as u64
-    };
     for step in &steps {
         let [low, high] = step.band;
-        let mut row: Vec<Cell> = vec![step.time.into(), at_risk(step.time).into()];
+        let mut row: Vec<Cell> = vec![step.time.into(), step.at_risk.into()];
         row.extend([done(step.survival), done(high), done(low)].map(Cell::from));
         table.rows.push(row);
     }
@@ -276,14 +259,17 @@ fn curve(
         .show_legend(false),
     );
     let cut_off = observations.iter().filter(|observation| !observation.happened);
+    let mut cut_off: Vec<f64> = cut_off.map(|observation| observation.time).collect();
+    if cut_off.len() > MOST_STEPS {
+        cut_off.sort_unstable_by(f64::total_cmp);
+        cut_off.dedup();
+    }
+    let cut_off = few(cut_off);
     let at = |time: f64| {
-        middle
-            .iter()
-            .rev()
-            .find(|point| point[0] <= time)
-            .map_or(0.0, |point| point[1])
+        let before = middle.partition_point(|point| point[0] <= time);
+        before.checked_sub(1).map_or(0.0, |last| middle[last][1])
     };
-    let ticks: Vec<f64> = cut_off.map(|observation| shown(observation.time)).collect();
+    let ticks: Vec<f64> = cut_off.iter().copied().map(shown).collect();
     if !ticks.is_empty() {
         let heights: Vec<f64> = ticks.iter().map(|&time| at(time)).collect();
         let marks = Scatter::new(ticks, heights)
@@ -301,6 +287,17 @@ fn curve(
         key: Vec::new(),
         table,
     }
+}
+
+/// At most as many as a chart shows, evenly chosen, the first and the last among them.
+fn few<T: Copy>(all: Vec<T>) -> Vec<T> {
+    if all.len() <= MOST_STEPS {
+        return all;
+    }
+    let last = all.len() - 1;
+    (0..MOST_STEPS)
+        .map(|place| all[place * last / (MOST_STEPS - 1)])
+        .collect()
 }
 
 /// The chart, unless all are done at the same time, or none is.

@@ -29,13 +29,16 @@ mod series;
 mod settings;
 mod study;
 mod table;
+mod trials;
 mod verdict;
 mod watch;
 
 pub use page::{PAGE_MARK, page};
 pub use study::study_page;
+pub use trials::PageTrials;
 pub use watch::{SettingTrials, Watch};
 
+use super::number::count;
 use crate::metrics::{Summary, TrialRecord};
 use crate::scenario::Scenario;
 
@@ -51,7 +54,7 @@ pub struct PageInput<'a> {
     /// What the protocol calls its roles, in the order of their numbers.
     pub roles: &'a [String],
     /// The trials.
-    pub records: &'a [TrialRecord],
+    pub trials: &'a PageTrials,
     /// Their figures.
     pub summary: &'a Summary,
     /// The version that ran them.
@@ -71,17 +74,36 @@ impl PageInput<'_> {
         self.roles.get(role).map_or("unknown", String::as_str)
     }
 
-    /// `in 35 trials`, `in the trial`.
+    /// The records that charts are drawn from: those of all trials, or of some.
+    fn records(&self) -> &[TrialRecord] {
+        self.trials.records()
+    }
+
+    /// How many trials are drawn, and how many there are, if these are more.
+    fn drawn(&self) -> Option<[String; 2]> {
+        let numbers = [self.records().len(), self.trials.count()];
+        (numbers[0] < numbers[1]).then(|| numbers.map(|trials| count(trials as u64)))
+    }
+
+    /// `in 35 trials`, `in the trial`: of what is known of all.
     fn in_trials(&self) -> String {
-        match self.records.len() {
+        match self.trials.count() {
             1 => "in the trial".to_owned(),
-            trials => format!("in {} trials", super::number::count(trials as u64)),
+            trials => format!("in {} trials", count(trials as u64)),
+        }
+    }
+
+    /// The same of what is known of those that are drawn: `in 1,000 of 100,000 trials`.
+    fn in_drawn(&self) -> String {
+        match self.drawn() {
+            Some([drawn, all]) => format!("in {drawn} of {all} trials"),
+            None => self.in_trials(),
         }
     }
 
     /// What the bands of series are over, if there is anything to be over.
     fn band_words(&self) -> &'static str {
-        if self.records.len() > 1 {
+        if self.records().len() > 1 {
             "Lines are medians over the trials that still run, bands hold nine of ten of them."
         } else {
             "There is one trial, so there are no bands."

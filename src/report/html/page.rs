@@ -45,6 +45,12 @@ pub fn page(input: &PageInput) -> String {
             h1 { (input.scenario.name) }
             @if let Some(question) = input.question { p class="question" { (question) } }
             p class="ran" { (ran(input)) }
+            @if let Some([drawn, all]) = input.drawn() {
+                p class="ran" {
+                    "Figures in numbers are of all " (all) " trials, and so are charts that do not say otherwise. Charts for which a trial's whole record is needed are "
+                    "drawn from " (drawn) " trials, spread evenly over all, and say so."
+                }
+            }
             nav {
                 @for section in &sections { a href={ "#" (section.id) } { (section.title) } }
                 @if watched.is_some() { a href="#watch" { "Trials to watch" } }
@@ -107,24 +113,35 @@ fn chart_script() -> String {
 }
 
 fn sections(input: &PageInput) -> Vec<Section> {
+    // Those that are drawn from whole records.
+    let drawn = |figure: Option<Figure>| match (figure, input.drawn()) {
+        (Some(figure), Some([drawn, all])) => Some(Figure {
+            caption: format!(
+                "{} Drawn from {drawn} of the {all} trials, spread evenly.",
+                figure.caption
+            ),
+            ..figure
+        }),
+        (figure, _) => figure,
+    };
     let all: [(&str, &str, Vec<Option<Figure>>); 7] = [
         (
             "mission",
             "Mission",
-            vec![mission::completion(input), gossip::spread(input)],
+            vec![mission::completion(input), drawn(gossip::spread(input))],
         ),
         (
             "bandwidth",
             "Bandwidth",
             vec![
-                Some(bandwidth::by_topic(input)),
-                bandwidth::by_role(input),
-                Some(robots::distribution(input)),
-                robots::by_number(input),
-                Some(robots::lorenz(input)),
-                series::by_topic(input),
-                series::over_robots(input),
-                Some(bandwidth::headers(input)),
+                drawn(Some(bandwidth::by_topic(input))),
+                drawn(bandwidth::by_role(input)),
+                drawn(Some(robots::distribution(input))),
+                drawn(robots::by_number(input)),
+                drawn(Some(robots::lorenz(input))),
+                drawn(series::by_topic(input)),
+                drawn(series::over_robots(input)),
+                drawn(Some(bandwidth::headers(input))),
             ],
         ),
         (
@@ -136,17 +153,17 @@ fn sections(input: &PageInput) -> Vec<Section> {
                 gossip::duplicates(input),
             ],
         ),
-        ("air", "Air", vec![air::by_distance(input), air::causes(input)]),
+        ("air", "Air", vec![drawn(air::by_distance(input)), air::causes(input)]),
         (
             "graph",
             "Connectivity",
-            vec![connectivity::graph(input), connectivity::roles(input)],
+            vec![drawn(connectivity::graph(input)), drawn(connectivity::roles(input))],
         ),
         (
             "failures",
             "Failures and their detection",
             vec![
-                detection::suspicions(input),
+                drawn(detection::suspicions(input)),
                 detection::times(input),
                 mission::healing(input),
             ],
@@ -178,10 +195,8 @@ pub(super) fn numbered(name: &str, sections: &[Section]) -> Markup {
 
 /// What was run.
 fn ran(input: &PageInput) -> String {
-    let mut seeds: Vec<u64> = input.records.iter().map(|record| record.seed).collect();
-    seeds.dedup();
-    let seeds: Vec<String> = seeds.iter().map(u64::to_string).collect();
-    let trials = input.records.len() as u64;
+    let seeds: Vec<String> = input.trials.seeds().iter().map(u64::to_string).collect();
+    let trials = input.trials.count() as u64;
     format!(
         "{} trial{} with seed{} {}, {} robots, {} simulated, {} control steps of {} s.",
         count(trials),

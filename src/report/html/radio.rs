@@ -88,8 +88,7 @@ pub fn lost(input: &PageInput) -> Figure {
 
 /// Times that frames took, as receivers felt them.
 pub fn latency(input: &PageInput) -> Option<Figure> {
-    let mut all = LatencyHistogram::default();
-    input.records.iter().for_each(|record| all.merge(&record.latency));
+    let all = input.trials.latency();
     let (least, most) = (all.min()?, all.max()?);
     let mut curve = vec![[least.as_secs() * 1e3, 0.0]];
     let mut below = 0;
@@ -113,7 +112,7 @@ pub fn latency(input: &PageInput) -> Option<Figure> {
     let mut plot = chart(x, percent_axis("copies that took no longer"), HoverMode::Closest);
     let hover = "%{y:.2f} % within %{x:.4g} ms<extra></extra>";
     plot.add_trace(line("copies", ALL, &curve, LineShape::Hv, hover).show_legend(false));
-    for (mark, symbol) in quantiles(&all).iter().zip(SYMBOLS) {
+    for (mark, symbol) in quantiles(all).iter().zip(SYMBOLS) {
         plot.add_trace(mark.trace(symbol));
     }
     Some(Figure {

@@ -31,7 +31,7 @@ pub fn distribution(input: &PageInput) -> Figure {
     let mut panels = Vec::new();
     for ((direction, heading, bytes), colour) in WAYS.into_iter().zip(DIRECTIONS) {
         let trials: Vec<Vec<f64>> = input
-            .records
+            .records()
             .iter()
             .map(|record| sorted(record.bytes_per_step(bytes)))
             .collect();
@@ -79,8 +79,8 @@ pub fn distribution(input: &PageInput) -> Figure {
         caption: format!(
             "Which share of the robots sent, and received, no more than so many bytes a control step, on all topics, headers \
              included, {}. A steep curve means that all carry about the same.{}",
-            input.in_trials(),
-            if input.records.len() > 1 {
+            input.in_drawn(),
+            if input.records().len() > 1 {
                 " The line is the median of the trials' curves, the band holds nine of ten of them."
             } else {
                 ""
@@ -101,7 +101,7 @@ fn panel(heading: &'static str, plot: plotly::Plot, trials: &[Vec<f64>]) -> Pane
 
 /// What each robot carries, by its number.
 pub fn by_number(input: &PageInput) -> Option<Figure> {
-    let robots = input.records.iter().map(|record| record.robots.len()).max()?;
+    let robots = input.records().iter().map(|record| record.robots.len()).max()?;
     if robots > MOST_ROBOTS {
         return None;
     }
@@ -116,7 +116,7 @@ pub fn by_number(input: &PageInput) -> Option<Figure> {
     let mut panels = Vec::new();
     for ((direction, heading, bytes), colour) in WAYS.into_iter().zip(DIRECTIONS) {
         let trials: Vec<Vec<f64>> = input
-            .records
+            .records()
             .iter()
             .map(|record| record.bytes_per_step(bytes))
             .collect();
@@ -186,7 +186,7 @@ pub fn lorenz(input: &PageInput) -> Figure {
     // How far curves hang below the diagonal.
     let mut below = vec![0.0];
     for ((direction, _, bytes), colour) in WAYS.into_iter().zip(DIRECTIONS) {
-        let curve = mean_lorenz(input.records, bytes);
+        let curve = mean_lorenz(input.records(), bytes);
         // What comes of rounding hangs nowhere.
         below.extend(curve.iter().map(|[robots, share]| (1e6 * (robots - share)).round()));
         for [robots, share] in &curve {

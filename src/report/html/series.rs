@@ -21,7 +21,7 @@ const WAYS: [(&str, &str, Way); 2] = [
 
 /// What a robot carries over time, by topic and direction.
 pub fn by_topic(input: &PageInput) -> Option<Figure> {
-    input.records.iter().find(|record| !record.series.is_empty())?;
+    input.records().iter().find(|record| !record.series.is_empty())?;
     let marks = Marks::of(input);
     let mut table = DataTable::new(&[
         "topic",
@@ -38,7 +38,7 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
         let mut all = Vec::new();
         for topic in 0..input.topics.len() {
             let name = input.topic(topic);
-            let moments = over_time(input.records, |record| means(record, way, topic));
+            let moments = over_time(input.records(), |record| means(record, way, topic));
             for moment in &moments {
                 let quantiles = moment.spread.quantiles;
                 table.rows.push(vec![
@@ -53,7 +53,7 @@ pub fn by_topic(input: &PageInput) -> Option<Figure> {
             }
             all.extend(ends(&moments));
             let [low, middle, high] = curves(&moments);
-            if input.records.len() > 1 {
+            if input.records().len() > 1 {
                 for edge in band(name, topic_colour(topic), &low, &high, &LineShape::Linear) {
                     plot.add_trace(edge);
                 }
@@ -121,7 +121,7 @@ fn curves(moments: &[Moment]) -> [Points; 3] {
 
 /// How far robots are apart over time, on all topics together.
 pub fn over_robots(input: &PageInput) -> Option<Figure> {
-    input.records.iter().find(|record| !record.series.is_empty())?;
+    input.records().iter().find(|record| !record.series.is_empty())?;
     let marks = Marks::of(input);
     let topics = input.topics.len();
     let mut table = DataTable::new(&[
@@ -135,7 +135,7 @@ pub fn over_robots(input: &PageInput) -> Option<Figure> {
     let mut panels = Vec::new();
     for (direction, heading, way) in WAYS {
         let of = |figure: fn(&RobotBytes) -> f64| {
-            over_time(input.records, |record| {
+            over_time(input.records(), |record| {
                 per_step(record, |entry| way(entry).get(topics).map(figure))
             })
         };

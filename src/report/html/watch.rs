@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::PageInput;
 use super::settings::with_unit;
 use crate::metrics::comparison::Comparison;
-use crate::metrics::figures::{COMPLETION, Exemplars, Figure, Sample, Told, pool};
+use crate::metrics::figures::{COMPLETION, Exemplars, Figure, Told};
 use crate::report::comparison::label;
 use crate::report::number;
 use crate::statistics::Estimator;
@@ -70,31 +70,21 @@ pub fn of_settings(comparison: &Comparison, settings: &[SettingTrials]) -> Optio
 /// Which trials of a scenario to watch; nothing if there is one, or nobody knows where they are.
 pub fn of_trials(input: &PageInput) -> Option<Markup> {
     let watch = input.watch.as_ref()?;
-    if input.records.len() < 2 {
+    if input.trials.count() < 2 {
         return None;
     }
-    let registry = input.scenario.figures();
-    let read: Vec<Vec<Sample>> = input.records.iter().map(|record| registry.read(record)).collect();
-    let told = |place: usize| -> Vec<Told> {
-        let mut samples: Vec<Sample> = read.iter().map(|samples| samples[place].clone()).collect();
-        pool(&mut samples);
-        let numbered = input.records.iter().zip(&samples);
-        numbered
-            .filter_map(|(record, sample)| Told::of(record.trial, sample))
-            .collect()
-    };
-    let figures: Vec<&Figure> = registry.figures().collect();
     // What the mission is about, else what the protocol's own robots note, else the first that differs.
     let rank = |figure: &Figure| match figure.key.as_str() {
         COMPLETION => 0,
         key if key.starts_with("noted.") => 1,
         _ => 2,
     };
-    let mut order: Vec<usize> = (0..figures.len()).collect();
-    order.sort_by_key(|&place| rank(figures[place]));
-    let mut chosen = order
-        .into_iter()
-        .filter_map(|place| Some((figures[place], exemplars(figures[place], &told(place))?)));
+    let mut figures: Vec<_> = input.trials.figures().collect();
+    figures.sort_by_key(|(figure, _)| rank(figure));
+    let mut chosen = figures.into_iter().filter_map(|(figure, pooled)| {
+        let told: Vec<Told> = pooled().told(input.trials.numbers()).collect();
+        Some((figure, exemplars(figure, &told)?))
+    });
     let (figure, exemplars) = chosen.find(|(_, exemplars)| exemplars.differ)?;
     let row = Row {
         name: "",

@@ -4,16 +4,16 @@ use std::path::Path;
 
 use desim::experiment::run_trial;
 use desim::export::Results;
-use desim::metrics::figures::Sample;
+use desim::metrics::figures::Samples;
 use desim::metrics::{Summary, TrialRecord};
-use desim::report::{Input, PageInput, Speed, page, terminal};
+use desim::report::{Input, PageInput, PageTrials, Speed, page, terminal};
 use desim::scenario::{Scenario, parse};
 use desim::simulation::DriverKind;
 use desim::text::{Style, columns};
 use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;
 
-use super::fixture::run;
+use super::fixture::{records_of, run};
 
 /// Eight robots that say more to their next than the channel takes, in and out of each other's range.
 fn busy() -> Scenario {
@@ -95,16 +95,14 @@ fn every_figure_of_the_radio_stands_in_the_summary_at_the_place_that_its_key_say
     let scenario = busy();
     let records = records(&scenario);
     let registry = scenario.figures();
-    let mut samples: Vec<Vec<Sample>> = registry.figures().map(|_| Vec::new()).collect();
+    let mut samples = Samples::new(registry.figures().count());
     for record in &records {
-        for (samples, sample) in samples.iter_mut().zip(registry.read(record)) {
-            samples.push(sample);
-        }
+        samples.push(&registry.read(record));
     }
     let summary = serde_json::to_value(summary(&scenario, &records)).unwrap();
     let readme = include_str!("../../../results/README.md");
     let mut found = 0;
-    for estimated in registry.estimate(samples) {
+    for estimated in registry.estimate(&samples) {
         let key = &estimated.figure.key;
         if !key.starts_with("radio.") && key != "goodput_bps" {
             continue;
@@ -132,7 +130,7 @@ fn the_page_has_charts_of_delivery_by_distance_and_of_causes() {
         scenario: &scenario,
         topics: &names(scenario.topics()),
         roles: &names(scenario.protocol.roles()),
-        records: &records,
+        trials: &PageTrials::of(&scenario, records.iter().cloned()),
         summary: &summary(&scenario, &records),
         made_by: "desim 9.9",
         watch: None,
@@ -175,12 +173,13 @@ fn the_tables_hold_what_the_trials_told() {
         assert!(dir.path().join(format!("{table}.parquet")).exists(), "{table}");
     }
     let results = Results::open(dir.path()).unwrap();
-    for (read, written) in results.records.iter().zip(&all) {
+    let read = records_of(&results);
+    for (read, written) in read.iter().zip(&all) {
         assert_eq!(read.air, written.air);
         assert!(read.air.as_ref().is_some_and(|air| air.links.len() == 8));
     }
     assert_eq!(
-        summary(&scenario, &results.records),
+        summary(&scenario, &read),
         results.summary,
         "the figures follow from the tables"
     );

@@ -10,7 +10,7 @@ use desim::simulation::DriverKind;
 use tempfile::tempdir;
 use tokio_util::sync::CancellationToken;
 
-use super::fixture::run;
+use super::fixture::{records_of, run};
 
 const TABLES: [&str; 6] = ["Delivery", "Delays", "Degree", "Hops", "Traffic", "Roles"];
 
@@ -60,7 +60,7 @@ fn each_table_is_there_where_it_is_asked_for_and_all_else_stays_as_it_is() {
             .unwrap_or_else(|| panic!("{table} is not there"));
         tables.remove(place);
         assert!(tables == without, "{table} changes other tables");
-        for (read, record) in results.records.iter().zip(&records) {
+        for (read, record) in records_of(&results).iter().zip(&records) {
             assert!(!record.asked.is_empty());
             assert_eq!(read.asked, record.asked);
         }
@@ -72,7 +72,7 @@ fn all_tables_together_are_those_of_each_alone() {
     let all = scenario(&format!("record: [{}]", TABLES.join(", ")));
     let together = records(&all);
     let (_, results) = written(&all, &together);
-    for (read, record) in results.records.iter().zip(&together) {
+    for (read, record) in records_of(&results).iter().zip(&together) {
         assert_eq!(read.asked, record.asked);
     }
     let alone = |table: usize| {

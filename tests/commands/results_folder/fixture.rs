@@ -8,7 +8,7 @@ use std::path::Path;
 
 use desim::engine::{ActorId, SimTime, Span};
 use desim::experiment::{Claim, Ending, Experiment, ExperimentError, Kept, Pool, Shard};
-use desim::export::{Folder, Manifest, Pictures, write};
+use desim::export::{Folder, Manifest, Pictures, Results, write};
 use desim::faults::Effect;
 use desim::geometry::{Pose, Vec2};
 use desim::metrics::detection::{Cause, DetectionRecord, FailureOutcome, Missed, ObservedFailure, Suspicion};
@@ -368,4 +368,9 @@ pub fn run(
         write(&folder, claim, &Kept::in_one(parts), scenario, Pictures::First).expect("the results can be written");
     }
     Ok(ending)
+}
+
+/// The records of results, all at once: they are few.
+pub fn records_of(results: &Results) -> Vec<TrialRecord> {
+    results.records().collect::<Result<_, _>>().unwrap()
 }

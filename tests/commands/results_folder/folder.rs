@@ -119,7 +119,7 @@ fn a_table_of_notes_is_there_only_where_robots_note_something_and_goes_with_the_
         assert!(!notes.exists(), "it is desim's own, and goes with the rest");
         run(dir.path(), &scenario(trials), 1, &stop, |trial| Ok(record(trial))).unwrap();
         assert_eq!(notes.exists(), there);
-        assert_eq!(Results::open(dir.path()).unwrap().records.len() as u32, trials);
+        assert_eq!(Results::open(dir.path()).unwrap().records().count() as u32, trials);
     }
 }
 

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
+use desim::metrics::summary::Trials;
 use desim::metrics::{Outcome, Summary, TrialRecord};
-use desim::report::{PAGE_MARK, PageInput, page};
+use desim::report::{PAGE_MARK, PageInput, PageTrials, Watch, page};
 use desim::spool::Spool;
 use tempfile::tempdir;
 
@@ -16,12 +17,13 @@ const ROLES: [&str; 4] = ["free", "root", "networker", "worker"];
 
 fn page_of(records: &[TrialRecord], topics: &[&str], roles: &[&str], question: &str) -> String {
     let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    let scenario = scenario(records.len() as u32);
     page(&PageInput {
         question: Some(question),
-        scenario: &scenario(records.len() as u32),
+        scenario: &scenario,
         topics: &names(topics),
         roles: &names(roles),
-        records,
+        trials: &PageTrials::of(&scenario, records.iter().cloned()),
         summary: &Summary::of("made-up", topics, roles, records),
         made_by: "desim 9.9",
         watch: None,
@@ -34,6 +36,49 @@ fn records(trials: u32) -> Vec<TrialRecord> {
 
 fn made_up(trials: u32) -> String {
     page_of(&records(trials), &TOPICS, &ROLES, "Does it hold?")
+}
+
+#[test]
+fn of_many_trials_some_are_drawn_and_what_takes_little_is_of_all_of_them() {
+    let scenario = scenario(2_001);
+    let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    let registry = scenario.figures();
+    let mut summary = Trials::new(&registry, &TOPICS, &ROLES);
+    let mut trials = PageTrials::new(&scenario);
+    for record in (0..2_001).map(record) {
+        summary.add(&record);
+        trials.add(record);
+    }
+    let page = page(&PageInput {
+        question: None,
+        scenario: &scenario,
+        topics: &names(&TOPICS),
+        roles: &names(&ROLES),
+        trials: &trials,
+        summary: &summary.summary("made-up"),
+        made_by: "desim 9.9",
+        watch: Some(Watch {
+            folder: "results/many".to_owned(),
+            ..Watch::default()
+        }),
+    });
+    for words in [
+        "2,001 trials with seed 1",
+        "are drawn from 501 trials, spread evenly over all, and say so.",
+        "each robot sent and received in 501 of 2,001 trials, topic by topic",
+        "1,601 of 2,001 trials completed",
+        "Of the 1,601 steps of the curve 1,000 are drawn and listed, spread evenly.",
+        // The slowest.
+        "desim replay results/many --trial 2000",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert_eq!(
+        page.matches("Drawn from 501 of the 2,001 trials, spread evenly.")
+            .count(),
+        12
+    );
+    assert!(page.len() < 10_000_000, "{} bytes", page.len());
 }
 
 /// A page without the script that draws, the first on it.

@@ -11,7 +11,7 @@ use desim::spool::Spool;
 use tempfile::{TempDir, tempdir};
 use tokio_util::sync::CancellationToken;
 
-use super::fixture::{record, run, scenario};
+use super::fixture::{record, records_of, run, scenario};
 
 /// Finished results of `trials` made-up trials of `scenario`.
 fn write(dir: &Path, scenario: &Scenario) {
@@ -38,10 +38,13 @@ fn records_come_back_from_their_tables_as_they_were_written() {
     write(dir.path(), &scenario(7));
     let results = Results::open(dir.path()).unwrap();
     let expected: Vec<_> = (0..7).map(|trial| as_kept(record(trial))).collect();
-    for (read, written) in results.records.iter().zip(&expected) {
-        assert_eq!(read, written);
+    // Twice: they are read anew each time.
+    for read in [records_of(&results), records_of(&results)] {
+        for (read, written) in read.iter().zip(&expected) {
+            assert_eq!(read, written);
+        }
+        assert_eq!(read.len(), 7);
     }
-    assert_eq!(results.records.len(), 7);
     assert_eq!(results.scenario, scenario(7));
 }
 
@@ -49,12 +52,9 @@ fn records_come_back_from_their_tables_as_they_were_written() {
 fn the_figures_follow_from_the_tables() {
     let dir = tempdir().unwrap();
     write(dir.path(), &scenario(7));
-    let Results {
-        names,
-        records,
-        summary,
-        ..
-    } = Results::open(dir.path()).unwrap();
+    let results = Results::open(dir.path()).unwrap();
+    let records = records_of(&results);
+    let Results { names, summary, .. } = results;
     let as_text = |names: &[String]| names.iter().map(|name| name.as_str().to_owned()).collect::<Vec<_>>();
     let (topics, roles) = (as_text(&names.topics), as_text(&names.roles));
     let [topics, roles] = [&topics, &roles].map(|names| names.iter().map(String::as_str).collect::<Vec<_>>());
@@ -275,8 +275,9 @@ fn trials_of_other_seeds_are_put_together() {
         scenario.trials = 4;
     });
     let both = Results::pooled(&dirs).unwrap();
-    assert_eq!((both.records.len(), both.summary.trials), (7, 7));
-    let seeds: Vec<_> = both.records.iter().map(|record| record.seed).collect();
+    let records = records_of(&both);
+    assert_eq!((records.len(), both.summary.trials), (7, 7));
+    let seeds: Vec<_> = records.iter().map(|record| record.seed).collect();
     assert_eq!(seeds, [1, 1, 1, 2, 2, 2, 2]);
     let alone = Results::pooled(&dirs[..1]).unwrap();
     assert_eq!(alone.summary, Results::open(&dirs[0]).unwrap().summary);
