@@ -50,13 +50,10 @@ pub struct MergeArguments {
 /// # Errors
 /// If the shards cannot be put together, or the results not be written.
 pub fn run(arguments: &MergeArguments) -> Result<(), Failure> {
-    let out = match (&arguments.out, &arguments.dirs[..]) {
-        (Some(out), _) | (None, [out]) => out,
-        (None, _) => {
-            return Err(Failure::Input(
-                "error: say where the results of several folders go: --out DIR, which may be one of them".to_owned(),
-            ));
-        }
+    let ((Some(out), _) | (None, [out])) = (&arguments.out, &arguments.dirs[..]) else {
+        return Err(Failure::Input(
+            "error: say where the results of several folders go: --out DIR, which may be one of them".to_owned(),
+        ));
     };
     let merged = merge(&Merge {
         dirs: &arguments.dirs,

@@ -65,6 +65,7 @@ impl Shard {
     }
 
     /// Its trials, of so many.
+    #[must_use]
     pub fn trials(self, trials: u32) -> impl ExactSizeIterator<Item = u32> {
         (self.number - 1..trials).step_by(self.of.get() as usize)
     }

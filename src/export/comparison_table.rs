@@ -25,14 +25,14 @@ pub fn write(path: &Path, comparison: &Comparison, trials: &[Trials]) -> io::Res
     let mut table = Table::create(path, columns(comparison))?;
     for setting in trials {
         let (name, levels): (Rc<str>, Rc<[String]>) = (setting.name.as_str().into(), setting.levels.as_slice().into());
-        for (figure, samples) in comparison.figures.iter().zip(&setting.samples) {
+        for (place, figure) in comparison.figures.iter().enumerate() {
             let key: Rc<str> = figure.key.as_str().into();
-            table.extend((0..).zip(samples).map(|(trial, sample)| Row {
+            table.extend((0..).zip(setting.of(place).samples()).map(|(trial, sample)| Row {
                 setting: name.clone(),
                 levels: levels.clone(),
                 figure: key.clone(),
                 trial,
-                sample: sample.clone(),
+                sample,
             }))?;
         }
     }

@@ -1,13 +1,13 @@
 //! The settings of a study: their folders, their trials, what these tell, and what is written of them.
 
-use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::asked::{StudyRun, Until};
 use super::error::{Other, RunsError};
 use crate::experiment::{Claim, Kept, Parts};
 use crate::export::{self, Contents, Folder, Manifest, Pictures, StudyFolder, StudyManifest};
 use crate::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials, widest};
-use crate::metrics::figures::{Figure, Registry, Sample, pool};
+use crate::metrics::figures::{Figure, Registry, Samples};
 use crate::report;
 use crate::scenario::{Plan, Scenario, Setting};
 
@@ -30,9 +30,9 @@ pub(super) struct Cell<'a> {
     pub folder: Folder,
     /// Its trials; `None` once its results have been written.
     pub trials: Option<OwnTrials>,
-    /// What each of its trials tells of each figure.
-    pub told: BTreeMap<u32, Vec<Sample>>,
-    pub registry: Registry,
+    /// What its trials tell of its figures, of as many as have been read.
+    told: Rc<Samples>,
+    registry: Registry,
     /// Where each figure common to all settings stands among its own.
     places: Vec<usize>,
 }
@@ -82,7 +82,7 @@ impl<'a> Settings<'a> {
                 scenario,
                 folder,
                 trials: None,
-                told: BTreeMap::new(),
+                told: Samples::new(registry.figures().count()).into(),
                 places: places.collect(),
                 registry,
             });
@@ -144,7 +144,7 @@ impl<'a> Settings<'a> {
     /// Writes the results of every setting, and says that the study is finished.
     pub fn finish(&mut self, manifest: &mut StudyManifest) -> Result<(), RunsError> {
         for cell in &mut self.cells {
-            cell.told.clear();
+            cell.told = Samples::new(0).into();
             if let Some(OwnTrials { claim, kept, .. }) = cell.trials.take() {
                 // There may be more of them by now than were asked for at first.
                 cell.folder.declare(&Manifest::new(&cell.scenario))?;
@@ -156,16 +156,15 @@ impl<'a> Settings<'a> {
         Ok(self.study.declare(manifest)?)
     }
 
-    /// Reads what the trials tell that are kept, for each setting, and not known yet.
-    pub fn recall(&mut self, kept: &[Kept]) {
+    /// Reads what the trials tell that are kept, for each setting, and have not been read yet. They must be there.
+    pub fn recall(&mut self, kept: &[Kept]) -> Result<(), RunsError> {
         for (cell, kept) in self.cells.iter_mut().zip(kept) {
-            let unknown = (0..cell.scenario.trials).filter(|trial| !cell.told.contains_key(trial));
-            let kept = unknown.filter_map(|trial| kept.load(trial).ok());
-            let read: Vec<_> = kept
-                .map(|part| (part.record.trial, cell.registry.read(&part.record)))
-                .collect();
-            cell.told.extend(read);
+            for trial in cell.told.len() as u32..cell.scenario.trials {
+                let told = cell.registry.read(&kept.load(trial)?.record);
+                Rc::make_mut(&mut cell.told).push(&told);
+            }
         }
+        Ok(())
     }
 
     /// Whether the intervals are narrow enough by now.
@@ -191,16 +190,8 @@ impl<'a> Settings<'a> {
             label: cell.setting.label(),
             levels: cell.setting.levels.clone(),
             seed: cell.scenario.seed,
-            samples: cell
-                .places
-                .iter()
-                .map(|&place| {
-                    let told = (0..cell.scenario.trials).filter_map(|trial| cell.told.get(&trial));
-                    let mut samples: Vec<Sample> = told.map(|told| told[place].clone()).collect();
-                    pool(&mut samples);
-                    samples
-                })
-                .collect(),
+            samples: Rc::clone(&cell.told),
+            places: cell.places.clone(),
         };
         self.cells.iter().map(of).collect()
     }

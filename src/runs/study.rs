@@ -9,10 +9,9 @@ use super::error::{Other, RunsError};
 use super::options::Options;
 use super::settings::{Cell, Settings};
 use super::trials::{Happening, Run};
-use crate::experiment::{Claim, Ending, FinishedTrial, Kept, Parts, Shard};
+use crate::experiment::{Claim, Ending, Experiment, Kept, Parts, Shard};
 use crate::export::{FolderError, StudyFolder, StudyManifest};
 use crate::metrics::comparison::{Comparison, Stopping};
-use crate::metrics::figures::Sample;
 use crate::scenario::Scenario;
 
 /// Finished results of a study.
@@ -161,47 +160,48 @@ impl Running<'_> {
         }
     }
 
-    /// Runs the trials that are missing, of all settings in one pool.
+    /// Runs the trials that are missing, of all settings in one pool, and reads what all of them tell.
     fn batch(&mut self, tell: &mut dyn FnMut(Happening)) -> Result<(), RunsError> {
-        let parts = |cell: &Cell| Some(Kept::in_one(cell.trials.as_ref()?.parts.clone()));
-        let kept: Option<Vec<Kept>> = self.settings.cells.iter().map(parts).collect();
-        self.settings.recall(&kept.unwrap_or_default());
-        let kept: usize = self.settings.cells.iter().map(|cell| cell.told.len()).sum();
-        let mut told: Vec<(usize, u32, Vec<Sample>)> = Vec::new();
-        let ending = {
-            let cells = self.settings.cells.iter().enumerate();
-            let run: Vec<(usize, &Cell, &Parts)> = cells
-                .filter_map(|(place, cell)| Some((place, cell, &cell.trials.as_ref()?.parts)))
-                .collect();
-            let trials: Vec<(&Scenario, &Parts)> =
-                run.iter().map(|(_, cell, parts)| (&cell.scenario, *parts)).collect();
-            let finished = |place: usize, part: &FinishedTrial| {
-                let (place, cell, _) = run[place];
-                told.push((place, part.record.trial, cell.registry.read(&part.record)));
-            };
-            let run = Run {
-                scenarios: &trials,
-                shard: Shard::WHOLE,
-                kept: kept as u32,
-                signs: &self.settings.study.trials(),
-            };
-            run.missing(self.options, finished, tell)
+        let cells = self.settings.cells.iter();
+        let trials: Vec<(&Scenario, &Parts)> = cells
+            .filter_map(|cell| Some((&cell.scenario, &cell.trials.as_ref()?.parts)))
+            .collect();
+        let run = Run {
+            scenarios: &trials,
+            shard: Shard::WHOLE,
+            kept: self.kept(),
+            signs: &self.settings.study.trials(),
         };
-        for (cell, trial, samples) in told {
-            self.settings.cells[cell].told.insert(trial, samples);
-        }
+        let ending = run.missing(self.options, |_, _| (), tell);
         if let Ok(Ending::Finished) = ending {
-            return Ok(());
+            let kept: Vec<Kept> = trials
+                .into_iter()
+                .map(|(_, parts)| Kept::in_one(parts.clone()))
+                .collect();
+            return self.settings.recall(&kept);
         }
         let interrupted = self.leave()?;
         ending?;
         Err(interrupted)
     }
 
+    /// How many trials are kept by now, of all settings.
+    fn kept(&self) -> u32 {
+        let of = |cell: &Cell| {
+            let experiment = Experiment {
+                trials: cell.scenario.trials,
+                shard: Shard::WHOLE,
+                parts: &cell.trials.as_ref()?.parts,
+            };
+            Some(experiment.kept())
+        };
+        self.settings.cells.iter().filter_map(of).sum()
+    }
+
     /// Leaves an unfinished study: finished trials stay, and if there are none, nothing does. Answers how many there are.
     fn leave(&mut self) -> Result<RunsError, RunsError> {
+        let kept = self.kept();
         let Settings { study, cells, .. } = &mut self.settings;
-        let kept: usize = cells.iter().map(|cell| cell.told.len()).sum();
         for cell in cells.iter_mut() {
             cell.trials = None;
         }
@@ -209,7 +209,7 @@ impl Running<'_> {
             study.clear(&self.manifest.settings)?;
         }
         Ok(RunsError::Interrupted {
-            kept,
+            kept: kept as usize,
             trials: cells.iter().map(|cell| cell.scenario.trials).sum(),
             dir: study.path().to_owned(),
         })

@@ -5,7 +5,7 @@ use std::path::Path;
 use desim::engine::Span;
 use desim::experiment::run_trial;
 use desim::metrics::comparison::{Comparison, Design, Trials};
-use desim::metrics::figures::{Figure, Registry, Sample, pool};
+use desim::metrics::figures::{Figure, Registry, Samples};
 use desim::metrics::{Summary, TrialRecord};
 use desim::scenario::{Override, Scenario, load, parse};
 use desim::simulation::DriverKind;
@@ -186,21 +186,20 @@ fn latencies_that_add_up_to_centuries_are_summed_written_and_read_back() {
     assert!(report.contains("Radio"), "{report}");
 }
 
-/// What `samples` of one setting tell, by the comparison.
+/// What `records` of one setting tell, by the comparison.
 fn compared(registry: &Registry, records: &[TrialRecord]) -> Comparison {
     let figures: Vec<Figure> = registry.figures().cloned().collect();
-    let told: Vec<Vec<Sample>> = records.iter().map(|record| registry.read(record)).collect();
-    let samples = (0..figures.len()).map(|place| {
-        let mut samples: Vec<Sample> = told.iter().map(|told| told[place].clone()).collect();
-        pool(&mut samples);
-        samples
-    });
+    let mut samples = Samples::new(figures.len());
+    for record in records {
+        samples.push(&registry.read(record));
+    }
     let trials = Trials {
         name: "one".into(),
         label: "one".into(),
         levels: Vec::new(),
         seed: 1,
-        samples: samples.collect(),
+        samples: samples.into(),
+        places: (0..figures.len()).collect(),
     };
     let design = Design {
         study: "one".into(),

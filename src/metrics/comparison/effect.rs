@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::contrasts::{Grid, Levels};
-use super::{Design, Trials, Verdict};
+use super::{Design, Side, Verdict};
 use crate::statistics::{
     Estimate, Estimator, Part, Tested, difference, paired_permutation, ratio_of_sums, sign_permutation,
 };
@@ -94,7 +94,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    pub(super) fn of(figure: usize, trials: &[Trials]) -> Self {
+    pub(super) fn of(figure: usize, trials: &[Side]) -> Self {
         let all = trials.iter().map(|trials| &trials.samples[figure]);
         let count = all.clone().map(Vec::len).min().unwrap_or(0);
         let settings = all.map(|samples| samples[..count].iter().map(|sample| sample.part).collect());

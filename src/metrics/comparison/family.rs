@@ -6,7 +6,7 @@ use super::contrasts::Contrasts;
 use super::effect::{Dependence, Effect, Interaction, LevelMean, Parts};
 use super::pair::{Pair, differ, gain_of};
 use super::verdict::Verdict;
-use super::{Design, SIGNIFICANT, Trials};
+use super::{Design, SIGNIFICANT, Side};
 use crate::statistics::{Tested, fewest_trials, holm, least_of_groups, least_of_pairs, testable};
 
 /// The tests over which p-values are adjusted, and those that are none of them.
@@ -34,8 +34,8 @@ pub(super) struct Tests {
 
 impl Tests {
     /// All tests that the design asks for, their p-values adjusted as one family.
-    pub(super) fn of(design: &Design, trials: &[Trials]) -> Self {
-        let labels: Vec<&[String]> = trials.iter().map(|trials| &trials.levels[..]).collect();
+    pub(super) fn of(design: &Design, trials: &[Side]) -> Self {
+        let labels: Vec<&[String]> = trials.iter().map(|side| side.levels).collect();
         let paired = trials.windows(2).all(|two| two[0].seed == two[1].seed);
         let contrasts = Contrasts::of(&design.factors, &labels, design.reference, paired);
         let all = (contrasts.count() * design.compared.len()).max(1);

@@ -15,10 +15,11 @@ pub use pair::{Gain, Pair, Plan, Tests};
 pub use setting::{Estimated, Setting, Survival};
 pub use verdict::Verdict;
 
+use std::rc::Rc;
+
 use serde::{Deserialize, Serialize};
 
-use super::figures::{Figure, Sample};
-use super::summary::Named;
+use super::figures::{Figure, Pooled, Sample, Samples};
 
 /// Below this, a p-value adjusted for the family shows a difference.
 pub const SIGNIFICANT: f64 = 0.05;
@@ -115,7 +116,7 @@ pub struct Stopping {
 }
 
 /// A setting's trials.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Trials {
     /// Its name; its results lie in the folder of that name.
     pub name: String,
@@ -125,8 +126,20 @@ pub struct Trials {
     pub levels: Vec<String>,
     /// Its seed.
     pub seed: u64,
-    /// What each trial tells of each figure: `samples[figure][trial]`.
-    pub samples: Vec<Vec<Sample>>,
+    /// What its trials tell of its own figures.
+    pub samples: Rc<Samples>,
+    /// Where each figure of the design stands among those.
+    pub places: Vec<usize>,
+}
+
+/// A setting as tests see it: what its trials tell of the figures that are tested, what was cut off restricted.
+#[derive(Clone, Debug)]
+struct Side<'a> {
+    name: &'a str,
+    levels: &'a [String],
+    seed: u64,
+    /// By the figure's place in the design; empty where it is not tested.
+    samples: Vec<Vec<Sample>>,
 }
 
 /// What is to be compared, and how.
@@ -154,9 +167,24 @@ impl Comparison {
     /// Compares settings, all of which have the figures of `design`.
     #[must_use]
     pub fn of(design: &Design, trials: &[Trials], stopping: Option<Stopping>) -> Self {
-        let restricted = restrict(trials);
-        let of_setting = |(trials, restricted)| Setting::of(design, trials, restricted);
-        let settings: Vec<Setting> = trials.iter().zip(&restricted).map(of_setting).collect();
+        let mut figures: Vec<Vec<Estimated>> = vec![Vec::new(); trials.len()];
+        let mut sides: Vec<Side> = trials.iter().map(Side::of).collect();
+        // One figure at a time: there may be many trials.
+        for (place, figure) in design.figures.iter().enumerate() {
+            let whole: Vec<Pooled> = trials.iter().map(|trials| trials.of(place)).collect();
+            let restricted = restrict(&whole);
+            let settings = figures.iter_mut().zip(&mut sides).zip(whole.iter().zip(&restricted));
+            for ((figures, side), (whole, restricted)) in settings {
+                figures.push(Estimated::of(figure, whole, restricted));
+                let is_tested = design.compared.contains(&place);
+                side.samples
+                    .push(if is_tested { restricted.samples() } else { Vec::new() });
+            }
+        }
+        let settings = trials.iter().zip(figures);
+        let settings: Vec<Setting> = settings
+            .map(|(trials, figures)| Setting::of(design, trials, figures))
+            .collect();
         let key = |&figure: &usize| design.figures[figure].key.clone();
         let pareto = design.pareto.map(|axes| Pareto::of(design, axes, &settings));
         let family::Tests {
@@ -165,7 +193,7 @@ impl Comparison {
             effects,
             interactions,
             family,
-        } = family::Tests::of(design, &restricted);
+        } = family::Tests::of(design, &sides);
         Self {
             study: design.study.clone(),
             question: design.question.clone(),
@@ -218,36 +246,43 @@ impl Comparison {
     }
 }
 
+impl Trials {
+    /// What its trials tell of figure number `place` of the design.
+    #[must_use]
+    pub fn of(&self, place: usize) -> Pooled {
+        self.samples.of(self.places[place])
+    }
+}
+
+impl<'a> Side<'a> {
+    /// Of no figure yet.
+    fn of(trials: &'a Trials) -> Self {
+        Self {
+            name: &trials.name,
+            levels: &trials.levels,
+            seed: trials.seed,
+            samples: Vec::new(),
+        }
+    }
+}
+
 /// Restricts what was cut off, in any setting, to the shortest time that a trial was watched in vain: up to there every trial has a
 /// value, so that its mean, the restricted mean, leaves nothing out and flatters nobody (Irwin, 1949; Royston and Parmar, 2013).
-fn restrict(trials: &[Trials]) -> Vec<Trials> {
-    let mut restricted = trials.to_vec();
-    let figures = trials.first().map_or(0, |first| first.samples.len());
-    for figure in 0..figures {
-        let limit = limit(trials, figure);
-        let samples = restricted.iter_mut().flat_map(|trials| &mut trials.samples[figure]);
-        for sample in samples.filter(|sample| sample.part[1] > 0.0 && sample.times.is_empty()) {
-            sample.is_censored |= sample.part[0] > limit;
-            sample.part[0] = sample.part[0].min(limit);
-        }
+fn restrict(settings: &[Pooled]) -> Vec<Pooled> {
+    let limit = settings.iter().map(Pooled::least_cut_off).fold(f64::INFINITY, f64::min);
+    let mut restricted = settings.to_vec();
+    for setting in &mut restricted {
+        setting.restrict(limit);
     }
     restricted
 }
 
-/// The shortest time that a trial was watched in vain; infinite where none was.
-fn limit(trials: &[Trials], figure: usize) -> f64 {
-    let all = trials.iter().flat_map(|trials| &trials.samples[figure]);
-    let cut_off = all.filter(|sample| sample.is_censored && sample.times.is_empty());
-    let cut_off = cut_off.map(|sample| sample.part[0]);
-    cut_off.fold(f64::INFINITY, f64::min)
-}
-
-/// The widest interval of a figure over the settings, for what would be compared so far; `None` where one has none.
+/// The widest interval of figure number `place` of the design over the settings, for what would be compared so far; `None` where one has none.
 #[must_use]
 pub fn widest(figure: &Figure, trials: &[Trials], place: usize) -> Option<f64> {
-    let trials = restrict(trials);
-    let mut widths = trials.iter().map(|trials| {
-        let [low, high] = figure.estimate(&trials.samples[place]).ci95;
+    let whole: Vec<Pooled> = trials.iter().map(|trials| trials.of(place)).collect();
+    let mut widths = restrict(&whole).into_iter().map(|setting| {
+        let [low, high] = setting.estimate(figure).ci95;
         Some(high? - low?)
     });
     widths.try_fold(0.0, |widest: f64, width| Some(widest.max(width?)))
@@ -293,11 +328,6 @@ pub fn apart(value: f64, other: f64) -> f64 {
     } else {
         difference
     }
-}
-
-/// Figures by their keys.
-fn by_key<T>(figures: &[Figure], of: impl Fn(usize) -> T) -> Named<T> {
-    Named::of(figures.iter().map(|figure| figure.key.as_str()), of)
 }
 
 #[cfg(test)]

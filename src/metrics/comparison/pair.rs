@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::setting::observations;
-use super::{Design, Trials, Verdict};
+use super::{Design, Side, Verdict};
 use crate::metrics::figures::{Better, COMPLETION, Sample, parts};
 use crate::statistics::{
     Estimate, POWER, Part, Tested, cliffs_delta_estimate, difference, least_of_ranks, log_rank, mann_whitney,
@@ -95,7 +95,7 @@ impl Pair {
     pub(super) fn of(
         design: &Design,
         figure: usize,
-        [against, setting]: [&Trials; 2],
+        [against, setting]: [&Side; 2],
         alpha: f64,
         family: usize,
     ) -> (Self, Option<Tested>) {
@@ -123,8 +123,8 @@ impl Pair {
         };
         let pair = Self {
             figure: design.figures[figure].key.clone(),
-            setting: setting.name.clone(),
-            against: against.name.clone(),
+            setting: setting.name.to_owned(),
+            against: against.name.to_owned(),
             paired,
             relative: difference
                 .value
@@ -145,7 +145,7 @@ impl Pair {
 }
 
 /// Whether two settings differ in any trial's figure.
-pub(super) fn differ(trials: &[Trials], figure: usize, [a, b]: [usize; 2]) -> bool {
+pub(super) fn differ(trials: &[Side], figure: usize, [a, b]: [usize; 2]) -> bool {
     let [a, b] = [&trials[a], &trials[b]].map(|trials| &trials.samples[figure]);
     let same = |(a, b): (&Sample, &Sample)| a.part.iter().zip(b.part).all(|(a, b)| super::apart(*a, b) == 0.0);
     a.len() != b.len() || !a.iter().zip(b).all(same)

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Design, Trials, by_key};
-use crate::metrics::figures::{COMPLETION, Sample};
+use super::{Design, Trials};
+use crate::metrics::figures::{COMPLETION, Figure, Pooled, Sample};
 use crate::metrics::summary::Named;
 use crate::statistics::{Estimate, Observation, Step, median, median_survival, survival_curve};
 
@@ -49,26 +49,29 @@ pub struct Survival {
     pub curve: Vec<Step>,
 }
 
+impl Estimated {
+    /// Of what the `whole` trials tell of `figure`, and what is left where their times are `restricted` to what all settings were watched for.
+    pub(super) fn of(figure: &Figure, whole: &Pooled, restricted: &Pooled) -> Self {
+        let values = || restricted.parts.iter().filter_map(|part| Sample::ratio(*part).value());
+        Self {
+            estimate: restricted.estimate(figure),
+            median: (!figure.is_ratio).then(|| median(&values().collect::<Vec<f64>>())),
+            survival: (figure.key == COMPLETION).then(|| Survival::of(&whole.samples())),
+        }
+    }
+}
+
 impl Setting {
-    /// Of `trials`, whose times were `restricted` to what all settings were watched for.
-    pub(super) fn of(design: &Design, trials: &Trials, restricted: &Trials) -> Self {
-        let count = trials.samples.first().map_or(0, Vec::len);
-        let estimated = |place: usize| {
-            let (figure, samples) = (&design.figures[place], &restricted.samples[place]);
-            let values = || samples.iter().filter_map(Sample::value).collect::<Vec<f64>>();
-            Estimated {
-                estimate: figure.estimate(samples),
-                median: (!figure.is_ratio).then(|| median(&values())),
-                survival: (figure.key == COMPLETION).then(|| Survival::of(&trials.samples[place])),
-            }
-        };
+    /// Of `trials`, with what they tell of each figure.
+    pub(super) fn of(design: &Design, trials: &Trials, figures: Vec<Estimated>) -> Self {
+        let keys = design.figures.iter().map(|figure| figure.key.clone());
         Self {
             name: trials.name.clone(),
             label: trials.label.clone(),
             levels: trials.levels.clone(),
             seed: trials.seed,
-            trials: count as u64,
-            figures: by_key(&design.figures, estimated),
+            trials: trials.samples.len() as u64,
+            figures: Named(keys.zip(figures).collect()),
         }
     }
 

@@ -47,7 +47,8 @@ fn trials(name: &str, seed: u64, samples: Vec<Vec<Sample>>) -> Trials {
         label: name.into(),
         levels: Vec::new(),
         seed,
-        samples,
+        places: (0..samples.len()).collect(),
+        samples: Samples::of_figures(&samples).into(),
     }
 }
 

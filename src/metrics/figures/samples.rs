@@ -6,7 +6,7 @@ use crate::spool::{Columns, Scratch};
 use crate::statistics::{Estimate, Lasting, Part, Times, pseudo_values_in_a_row};
 
 /// What trials tell of a number of figures.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Samples {
     /// Of each figure the numerators, then the denominators: a row a trial.
     parts: Columns,
@@ -14,7 +14,7 @@ pub struct Samples {
 }
 
 /// What few trials tell of a figure, or few figures ask for.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct More {
     /// The places of the trials whose value was cut off.
     cut_off: Vec<u32>,
@@ -66,6 +66,32 @@ impl Samples {
         }
     }
 
+    /// Of so many trials, `samples[figure][trial]`.
+    ///
+    /// # Panics
+    /// If figures have different numbers of trials.
+    #[must_use]
+    pub fn of_figures(samples: &[Vec<Sample>]) -> Self {
+        let mut kept = Self::new(samples.len());
+        for trial in 0..samples.first().map_or(0, Vec::len) {
+            let row: Vec<Sample> = samples.iter().map(|figure| figure[trial].clone()).collect();
+            kept.push(&row);
+        }
+        kept
+    }
+
+    /// How many trials there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.parts.is_empty()
+    }
+
     /// The times that trials tell of figure number `place`, from 0, one trial after another; none where it is no mean of times.
     ///
     /// # Panics
@@ -110,6 +136,44 @@ impl Samples {
 }
 
 impl Pooled {
+    /// The least value that was cut off; infinite where none was, and where the figure is a mean of times, which is restricted as a whole.
+    #[must_use]
+    pub fn least_cut_off(&self) -> f64 {
+        let cut_off = self.cut_off.iter().filter(|_| self.lasting.is_none());
+        cut_off
+            .map(|place| self.parts[*place as usize][0])
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Restricts every trial's value to `limit`: what is more is cut off there.
+    pub fn restrict(&mut self, limit: f64) {
+        if self.lasting.is_some() || limit.is_infinite() {
+            return;
+        }
+        let mut cut_off = Vec::new();
+        for (place, part) in (0..).zip(&mut self.parts) {
+            let was_cut_off = self.cut_off.binary_search(&place).is_ok();
+            if was_cut_off || (part[1] > 0.0 && part[0] > limit) {
+                cut_off.push(place);
+            }
+            if part[1] > 0.0 {
+                part[0] = part[0].min(limit);
+            }
+        }
+        self.cut_off = cut_off;
+        self.longest = longest_cut_off(self.values().map(|(_, value, is_cut_off)| (value, is_cut_off)));
+    }
+
+    /// What each trial tells, without the times.
+    #[must_use]
+    pub fn samples(&self) -> Vec<Sample> {
+        let mut samples: Vec<Sample> = self.parts.iter().map(|part| Sample::ratio(*part)).collect();
+        for place in &self.cut_off {
+            samples[*place as usize].is_censored = true;
+        }
+        samples
+    }
+
     /// `figure`, which these are of, over all trials.
     #[must_use]
     pub fn estimate(&self, figure: &Figure) -> Estimate {

@@ -1,6 +1,6 @@
 //! The shards of a scenario.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use super::error::MergeError;
 use super::lack::{Lack, MissingTrials};
@@ -66,9 +66,9 @@ pub fn merge(merge: &Merge) -> Result<Merged, MergeError> {
 }
 
 /// The scenario of shards that this program could have run.
-pub fn own(dir: &PathBuf, manifest: &Manifest) -> Result<Scenario, MergeError> {
+pub fn own(dir: &Path, manifest: &Manifest) -> Result<Scenario, MergeError> {
     let foreign = |differences: Vec<String>| MergeError::Foreign {
-        dir: dir.clone(),
+        dir: dir.to_owned(),
         differences,
     };
     let scenario = manifest.read_scenario(dir).map_err(|wrong| foreign(vec![wrong]))?;

@@ -85,7 +85,7 @@ fn put_together(
     let stopping = match &comparison {
         Some(_) => None,
         None => {
-            settings.recall(&kept);
+            settings.recall(&kept)?;
             stopping(&settings)?
         }
     };
