@@ -187,26 +187,29 @@ impl Needs {
                 help: "make `metrics.series_every` more, or 0 for no series",
             },
         ];
-        // A few numbers each stay in memory until all are finished, and their rows fill the tables.
-        let trials = f64::from(scenario.trials);
-        let kept = TRIAL + view.robots * LOAD + view.suspicions() * TIME + view.failures() * NOTICED;
-        let rows_more = |own: f64| rows(own * trials) - rows(own);
-        shares.push(Share {
-            what: "the other trials, until all are finished",
-            bytes: (trials - 1.0) * kept
-                + rows_more(view.suspicions()) * SUSPICION
-                + rows_more(view.samples) * SAMPLE
-                + rows_more(view.samples * view.robots) * POSITION
-                + rows_more(view.entries() * view.topics()) * TOPIC
-                + rows_more(2.0 * view.robots) * CARRIED,
-            field: "trials",
-            also: &["time_limit", "detector", "swarm.robots"],
-            help: "make `trials` fewer",
-        });
+        shares.push(others(&view, f64::from(scenario.trials)));
         Self {
             shares,
             events: view.events(),
         }
+    }
+}
+
+/// What is in memory of the trials but one until all are finished: a few numbers each, and their rows, which fill the tables.
+fn others(view: &View, trials: f64) -> Share {
+    let kept = TRIAL + view.robots * LOAD + view.suspicions() * TIME + view.failures() * NOTICED;
+    let rows_more = |own: f64| rows(own * trials) - rows(own);
+    Share {
+        what: "the other trials, until all are finished",
+        bytes: (trials - 1.0) * kept
+            + rows_more(view.suspicions()) * SUSPICION
+            + rows_more(view.samples) * SAMPLE
+            + rows_more(view.samples * view.robots) * POSITION
+            + rows_more(view.entries() * view.topics()) * TOPIC
+            + rows_more(2.0 * view.robots) * CARRIED,
+        field: "trials",
+        also: &["time_limit", "detector", "swarm.robots"],
+        help: "make `trials` fewer",
     }
 }
 
