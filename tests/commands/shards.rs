@@ -80,7 +80,7 @@ fn split(dir: &Path, command: &[&str], chance: &mut Chance) -> Vec<String> {
     let of = 1 + chance.below(5) as u32;
     let mut folders = BTreeSet::new();
     for number in 1..=of {
-        for _ in 0..1 + chance.below(3) / 2 {
+        for _ in 0..=chance.below(3) / 2 {
             let folder = format!("s{}", chance.below(3));
             shard(dir, command, number, of, &folder);
             folders.insert(folder);

@@ -34,7 +34,7 @@ fn setting(levels: &[u32], samples: Vec<Vec<Sample>>) -> Trials {
         levels,
         seed: 1,
         places: (0..samples.len()).collect(),
-        samples: Samples::of_figures(&samples).into(),
+        samples: Rc::new(samples.into()),
     }
 }
 
@@ -165,7 +165,7 @@ fn ratios_of_sums_have_effects_too_and_a_setting_without_a_value_has_none() {
         (Verdict::Worse, Some(2.0 / 4096.0))
     );
     near(compared.effects[1].difference.value, 0.0);
-    trials[3].samples = Samples::of_figures(&[vec![Sample::default(); 12]]).into();
+    trials[3].samples = Rc::new(vec![vec![Sample::default(); 12]].into());
     let compared = Comparison::of(&design, &trials, None);
     assert!(
         compared

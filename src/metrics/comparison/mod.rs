@@ -116,7 +116,7 @@ pub struct Stopping {
 }
 
 /// A setting's trials.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Trials {
     /// Its name; its results lie in the folder of that name.
     pub name: String,

@@ -48,7 +48,7 @@ fn trials(name: &str, seed: u64, samples: Vec<Vec<Sample>>) -> Trials {
         levels: Vec::new(),
         seed,
         places: (0..samples.len()).collect(),
-        samples: Samples::of_figures(&samples).into(),
+        samples: Rc::new(samples.into()),
     }
 }
 
@@ -73,7 +73,7 @@ fn bytes(stream: u32, own: u32, count: usize, shift: f64) -> Vec<Sample> {
 }
 
 fn pairs(design: &Design, trials: &[Trials]) -> Vec<Pair> {
-    family::Tests::of(design, trials).pairs
+    Comparison::of(design, trials, None).pairs
 }
 
 fn claims(design: &Design, a: &Trials, b: &Trials) -> bool {

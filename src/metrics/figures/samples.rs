@@ -66,20 +66,6 @@ impl Samples {
         }
     }
 
-    /// Of so many trials, `samples[figure][trial]`.
-    ///
-    /// # Panics
-    /// If figures have different numbers of trials.
-    #[must_use]
-    pub fn of_figures(samples: &[Vec<Sample>]) -> Self {
-        let mut kept = Self::new(samples.len());
-        for trial in 0..samples.first().map_or(0, Vec::len) {
-            let row: Vec<Sample> = samples.iter().map(|figure| figure[trial].clone()).collect();
-            kept.push(&row);
-        }
-        kept
-    }
-
     /// How many trials there are.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -132,6 +118,22 @@ impl Samples {
             pooled.longest = longest_cut_off(pooled.values().map(|(_, value, is_cut_off)| (value, is_cut_off)));
         }
         pooled
+    }
+}
+
+impl From<Vec<Vec<Sample>>> for Samples {
+    /// Of `samples[figure][trial]`: as many trials of each figure as the first has.
+    ///
+    /// # Panics
+    /// If a figure has fewer.
+    fn from(samples: Vec<Vec<Sample>>) -> Self {
+        let mut kept = Self::new(samples.len());
+        let trials = samples.first().map_or(0, Vec::len);
+        let mut figures: Vec<_> = samples.into_iter().map(Vec::into_iter).collect();
+        for _ in 0..trials {
+            kept.push(&figures.iter_mut().filter_map(Iterator::next).collect::<Vec<_>>());
+        }
+        kept
     }
 }
 

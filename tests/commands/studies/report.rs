@@ -1,6 +1,7 @@
 //! What people read of a comparison.
 
 use std::path::Path;
+use std::rc::Rc;
 
 use desim::metrics::comparison::{Comparison, Design, Factor, Stopping, Trials};
 use desim::metrics::figures::{Better, COMPLETION, Figure, Sample};
@@ -55,7 +56,8 @@ fn made_up(reference: Option<usize>, stopping: Option<Stopping>) -> Comparison {
         label: label.into(),
         levels: vec![label.into()],
         seed: 1,
-        samples,
+        places: (0..samples.len()).collect(),
+        samples: Rc::new(samples.into()),
     };
     let figures = vec![
         figure(
@@ -153,18 +155,22 @@ fn told(accuracies: [f64; 4], reference: Option<usize>) -> Comparison {
             label: (*name).into(),
             levels: vec![(*name).into()],
             seed: 1,
-            samples: vec![
-                (0..12)
-                    .map(|trial| Sample {
-                        part: if accuracy.is_nan() {
-                            [0.0; 2]
-                        } else {
-                            [accuracy + f64::from(trial % 3) / 100.0, 1.0]
-                        },
-                        ..Sample::default()
-                    })
-                    .collect(),
-            ],
+            places: vec![0],
+            samples: Rc::new(
+                vec![
+                    (0..12)
+                        .map(|trial| Sample {
+                            part: if accuracy.is_nan() {
+                                [0.0; 2]
+                            } else {
+                                [accuracy + f64::from(trial % 3) / 100.0, 1.0]
+                            },
+                            ..Sample::default()
+                        })
+                        .collect(),
+                ]
+                .into(),
+            ),
         });
     let mut compared = Comparison::of(&design, &settings.collect::<Vec<_>>(), None);
     describe(&mut compared);
@@ -263,11 +269,15 @@ fn with_and_without_a_detector(reference: Option<usize>) -> Comparison {
         label: levels.map(String::as_str).join(", "),
         levels: levels.map(String::clone).to_vec(),
         seed: 1,
-        samples: vec![
-            (0..8)
-                .map(|trial| sample(f64::from(levels[0] != "none"), trial))
-                .collect(),
-        ],
+        places: vec![0],
+        samples: Rc::new(
+            vec![
+                (0..8)
+                    .map(|trial| sample(f64::from(levels[0] != "none"), trial))
+                    .collect(),
+            ]
+            .into(),
+        ),
     });
     let mut compared = Comparison::of(&design, &settings.collect::<Vec<_>>(), None);
     describe(&mut compared);
