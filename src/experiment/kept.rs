@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use super::parts::{FinishedTrial, Parts, PartsError};
+use super::part_file::FinishedTrial;
+use super::parts::{Parts, PartsError};
 
 /// The finished trials of an experiment, all of them, to be read in order.
 #[derive(Clone, Debug)]

@@ -7,9 +7,36 @@ use std::io::{self, BufRead, BufReader, BufWriter, Read, Seek, Write};
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3;
 
-use super::parts::{FinishedTrial, Key};
-use crate::metrics::Lists;
+use crate::metrics::{Lists, TrialRecord};
 use crate::spool::{Section, Shape};
+
+/// A trial and what it took.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FinishedTrial {
+    /// Wall time that its thread spent on it, seconds. Depends on the machine: for the manifest only.
+    pub wall_s: f64,
+    /// What it left behind.
+    pub record: TrialRecord,
+}
+
+/// What a finished trial is of: a hash of everything that its result depends on, but its number. Trials of another key are other trials.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Key(#[serde(with = "hexadecimal")] pub u128);
+
+/// JSON has no numbers of 128 bits.
+mod hexadecimal {
+    use serde::{Deserialize, Deserializer, Serializer, de};
+
+    #[allow(clippy::trivially_copy_pass_by_ref)] // As serde calls it.
+    pub fn serialize<S: Serializer>(hash: &u128, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(&format_args!("{hash:032x}"))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u128, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        u128::from_str_radix(&text, 16).map_err(de::Error::custom)
+    }
+}
 
 /// The first line of a file.
 #[derive(Serialize, Deserialize)]

@@ -8,7 +8,8 @@ use std::time::Instant;
 
 use tokio_util::sync::CancellationToken;
 
-use super::parts::{FinishedTrial, Parts, PartsError};
+use super::part_file::FinishedTrial;
+use super::parts::{Parts, PartsError};
 use super::shard::Shard;
 use crate::metrics::TrialRecord;
 

@@ -12,7 +12,7 @@ use super::folder::{Contents, Folder, TRIALS, hold_page, write_whole};
 use super::held::{FileEntry, document, held, sealed, unseal};
 use super::manifest::{Difference, Manifest, compare, made_by, other_program};
 use super::picture;
-use super::place::{FolderError, Place, delete_folder, failed, json};
+use super::place::{FolderError, Place, delete_folder, json};
 use super::read;
 use crate::metrics::comparison::{Comparison, Trials};
 use crate::metrics::figures::Told;
@@ -305,7 +305,7 @@ impl StudyFolder {
             .and_then(|()| super::comparison_table::write(&unfinished, comparison, trials))
             .and_then(|()| super::held::measure(&unfinished))
             .and_then(|entry| fs::rename(&unfinished, &path).map(|()| entry));
-        written.map(Some).map_err(failed("write", &path))
+        written.map(Some).map_err(super::place::failed("write", &path))
     }
 
     #[cfg(not(feature = "parquet"))]
