@@ -590,3 +590,64 @@ fn a_file_of_a_trial_can_be_read_by_whoever_may_read_the_folder() {
         assert_eq!(Parts::at(trials, manifest.key()).there().unwrap(), [0]);
     }
 }
+
+/// `sbatch` as the script calls it: it keeps what it is given, and runs it as a task of an array would.
+const SBATCH: &str = "#!/bin/sh\nprintf '%s\\n' \"$*\" >> \"$PLACE/asked\"\nprintf 'job:\\n' >> \"$PLACE/asked\"\ntee -a \"$PLACE/asked\" > \"$PLACE/job\"\n\
+    case \"$*\" in *--array=*) for task in 1 2 3; do SLURM_ARRAY_TASK_ID=$task sh \"$PLACE/job\" || exit; done ;; *) sh \"$PLACE/job\" > \"$PLACE/log\" ;; esac\necho 7\n";
+
+#[test]
+#[cfg(unix)]
+fn the_script_for_slurm_runs_an_array_and_merges() {
+    use std::os::unix::fs::PermissionsExt;
+    let dir = place();
+    for (file, command, name) in [("base.ron", &SCENARIO_RUN, "one"), ("study.ron", &STUDY_RUN, "many")] {
+        done(dir.path(), &["new", name, "--slurm", "3", "--run", file]);
+        let sbatch = dir.path().join("bin/sbatch");
+        fs::create_dir_all(dir.path().join("bin")).unwrap();
+        fs::write(&sbatch, SBATCH).unwrap();
+        fs::set_permissions(&sbatch, fs::Permissions::from_mode(0o755)).unwrap();
+        let path = format!(
+            "{}:{}",
+            dir.path().join("bin").display(),
+            std::env::var("PATH").unwrap()
+        );
+        let script = Command::new("bash")
+            .arg(format!("{name}.slurm.sh"))
+            .current_dir(dir.path())
+            .envs([("PATH", path.as_str()), ("DESIM", env!("CARGO_BIN_EXE_desim"))])
+            .env("PLACE", dir.path())
+            .output()
+            .unwrap();
+        assert!(script.status.success(), "{}", said(&script));
+        let asked = fs::read_to_string(dir.path().join("asked")).unwrap();
+        assert!(
+            asked.contains("--array=1-3") && asked.contains("--dependency=afterany:7"),
+            "{asked}"
+        );
+        assert!(
+            asked.contains(&format!("{} \"{file}\" --shard auto/3", command[0])),
+            "{asked}"
+        );
+        let log = fs::read_to_string(dir.path().join("log")).unwrap();
+        assert!(
+            log.contains("Does loss hurt?") || log.contains("Who is suspected?"),
+            "{log}"
+        );
+        done(dir.path(), &[&command[..], &["--out", "whole"]].concat());
+        let [whole, merged] = ["whole", &format!("results/{name}")].map(|folder| tree(&dir.path().join(folder)));
+        assert_same(&whole, &merged, name);
+        fs::remove_dir_all(dir.path().join("whole")).unwrap();
+    }
+    let words = refused(dir.path(), &["new", "one", "--slurm", "3", "--run", "base.ron"]);
+    assert!(words.contains("is there already"), "{words}");
+    let words = refused(dir.path(), &["new", "two", "--slurm", "3"]);
+    assert!(words.contains("two.ron"), "{words}");
+    fs::write(dir.path().join("$HOME.ron"), BASE).unwrap();
+    let words = refused(dir.path(), &["new", "two", "--slurm", "3", "--run", "$HOME.ron"]);
+    assert!(words.contains("a shell would read"), "{words}");
+    fs::write(dir.path().join("two.ron"), BASE.replace("trials", "trails")).unwrap();
+    let words = refused(dir.path(), &["new", "two", "--slurm", "3"]);
+    assert!(words.contains("trials"), "{words}");
+    refused(dir.path(), &["new", "two", "--slurm", "0"]);
+    assert!(!dir.path().join("two.slurm.sh").exists());
+}
