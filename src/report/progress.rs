@@ -178,3 +178,97 @@ impl Progress {
         grid
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::text::columns;
+
+    fn underway() -> Progress {
+        let process = |shard: &str, state, under_way: &[&str], heard_s| ProcessProgress {
+            shard: shard.to_owned(),
+            host: "node07.cluster.example.org".to_owned(),
+            process: 31_337,
+            state,
+            finished: 1_200,
+            left: 9,
+            under_way: under_way.iter().map(|&trial| trial.to_owned()).collect(),
+            heard_s,
+        };
+        Progress {
+            name: "losses".to_owned(),
+            trials: 20_000,
+            done: 12_345,
+            finished: false,
+            settings: vec![SettingProgress {
+                name: "some".to_owned(),
+                trials: 20_000,
+                done: 12_345,
+            }],
+            processes: vec![
+                process(
+                    "1/4",
+                    "running",
+                    &["1 of some", "5 of some", "9 of some", "13 of some"],
+                    0.4,
+                ),
+                process("2/4", "silent", &[], 7300.0),
+            ],
+            failed: vec![FailedTrial {
+                trial: "17 of some".to_owned(),
+                shard: "2/4".to_owned(),
+                reason: "a robot counted what nobody \u{1b}[31mknows".to_owned(),
+            }],
+            unattended: 1_234,
+            unattended_shards: Some("2-4".to_owned()),
+            left_s: Some(5400.0),
+        }
+    }
+
+    #[test]
+    fn who_does_what_what_failed_and_what_nobody_does_is_told_within_the_width() {
+        for width in [24, 40, 80, 120] {
+            let text = underway().text(Style { colour: false, width });
+            assert!(text.lines().all(|line| columns(line) <= width), "{width}:\n{text}");
+            assert!(!text.contains('\u{1b}'));
+        }
+        let text = underway().text(Style {
+            colour: false,
+            width: 200,
+        });
+        for words in [
+            "12,345 of 20,000 trials",
+            "1 process, 4 trials under way",
+            "trial 17 of some, of shard 2/4: a robot counted",
+            "1,234 trials have nobody at work on them: --array=2-4 runs them",
+            "about 90 minutes",
+            "31337 on node07.cluster.example.org",
+            "1 of some, 5 of some, 9 of some and 1 more",
+            "0 s ago",
+            "2 hours ago",
+        ] {
+            assert!(text.contains(words), "{words}:\n{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_done_says_what_comes_next_and_what_is_finished_says_so() {
+        let done = Progress {
+            done: 20_000,
+            unattended: 0,
+            failed: Vec::new(),
+            processes: Vec::new(),
+            left_s: None,
+            ..underway()
+        };
+        let text = |progress: &Progress| {
+            progress.text(Style {
+                colour: false,
+                width: 80,
+            })
+        };
+        assert!(text(&done).contains("nobody is at work") && text(&done).contains("desim merge"));
+        let finished = Progress { finished: true, ..done };
+        assert!(text(&finished).contains("the results have been written") && !text(&finished).contains("running"));
+    }
+}
