@@ -118,7 +118,7 @@ fn results(dir: &Path) -> Result<Manifest, Failure> {
             Ok(manifest)
         }
         Ok(Contents::Results(_)) => refuse(format!(
-            "the results in {shown} are unfinished: run the same `desim scenario` command to its end first"
+            "the results in {shown} are unfinished: run the same `desim scenario` command to its end first, or `desim merge` once all shards are done"
         )),
         Ok(Contents::Nothing) | Err(FolderError::Foreign { .. } | FolderError::NotAFolder(_)) => {
             refuse(format!("{shown} holds no results of desim"))

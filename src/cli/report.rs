@@ -83,7 +83,7 @@ fn study(dirs: &[PathBuf]) -> Result<Option<StudyFolder>, Failure> {
 fn report_study(folder: &StudyFolder, arguments: &ReportArguments) -> Result<(), Failure> {
     let unfinished = || {
         Failure::Input(format!(
-            "error: the study in {} is not finished: go on with it by `desim compare`",
+            "error: the study in {} is not finished: go on with it by `desim compare`, or put its shards together by `desim merge`",
             shown(folder.path())
         ))
     };

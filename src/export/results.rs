@@ -37,7 +37,7 @@ pub enum ResultsError {
     #[error("{} holds no results of desim: give a folder that `desim scenario` has filled", shown(.0))]
     None(PathBuf),
     /// Trials are missing.
-    #[error("the results in {} are unfinished: run the same `desim scenario` command to its end first", shown(.0))]
+    #[error("the results in {} are unfinished: run the same `desim scenario` command to its end first, or `desim merge` once all shards are done", shown(.0))]
     Unfinished(PathBuf),
     /// Two folders hold what cannot be put together.
     #[error("{} and {} cannot be put into one report: {why}\n  {}", shown(&.folders[0]), shown(&.folders[1]), .differences.join("\n  "))]

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::num::NonZeroU32;
 use std::path::PathBuf;
 
-use super::merge::{MergeError, ranges, sources};
+use super::merge::sources::{self, Shards};
+use super::merge::{MergeError, ranges};
 use super::runner::{Health, Runner, now_s};
 use crate::experiment::Shard;
 use crate::export::{Folder, Manifest, StudyFolder, StudyManifest};
@@ -18,11 +19,9 @@ use crate::report::{FailedTrial, ProcessProgress, Progress, SettingProgress};
 /// # Panics
 /// If there is no folder.
 pub fn status(dirs: &[PathBuf]) -> Result<Progress, MergeError> {
-    let dirs = sources::folders(dirs, None);
-    let status = if sources::are_of_study(&dirs)? {
-        of_study(&dirs)?
-    } else {
-        of_scenario(&dirs)?
+    let status = match sources::shards(dirs)? {
+        Shards::Scenario(shards) => of_scenario(&shards)?,
+        Shards::Study(shards) => of_study(&shards)?,
     };
     Ok(status.progress(now_s()))
 }
@@ -44,43 +43,32 @@ struct Trials {
     done: BTreeSet<u32>,
 }
 
-fn of_scenario(dirs: &[PathBuf]) -> Result<Status, MergeError> {
-    let mut manifests = Vec::new();
-    for dir in dirs {
-        manifests.push((dir.clone(), sources::manifest(dir)?));
-    }
-    sources::agree(&manifests)?;
-    let trials = trials(&manifests)?;
+fn of_scenario(shards: &[(PathBuf, Manifest)]) -> Result<Status, MergeError> {
+    let trials = trials(shards)?;
     Ok(Status {
         name: trials.name.clone(),
-        finished: manifests.iter().any(|(_, manifest)| manifest.finished),
+        finished: shards.iter().any(|(_, manifest)| manifest.finished),
         scenarios: vec![trials],
         is_study: false,
-        runners: runners(dirs.iter().map(|dir| Folder::new(dir.clone()).trials())),
+        runners: runners(shards.iter().map(|(dir, _)| Folder::new(dir.clone()).trials())),
     })
 }
 
-fn of_study(dirs: &[PathBuf]) -> Result<Status, MergeError> {
-    let mut studies: Vec<(PathBuf, StudyManifest)> = Vec::new();
-    for dir in dirs {
-        studies.push((dir.clone(), sources::study(dir)?));
-    }
-    sources::agree_on_study(&studies)?;
+fn of_study(shards: &[(PathBuf, StudyManifest)]) -> Result<Status, MergeError> {
     let mut scenarios = Vec::new();
-    let (_, first) = &studies[0];
+    let (_, first) = &shards[0];
     for setting in &first.settings {
-        let manifests = sources::settings(dirs, setting)?;
         scenarios.push(Trials {
             name: setting.clone(),
-            ..trials(&manifests)?
+            ..trials(&sources::settings(shards, setting)?)?
         });
     }
     Ok(Status {
         name: first.plan["name"].as_str().unwrap_or_default().to_owned(),
         scenarios,
         is_study: true,
-        finished: studies.iter().any(|(_, manifest)| manifest.finished),
-        runners: runners(dirs.iter().map(|dir| StudyFolder::new(dir.clone()).trials())),
+        finished: shards.iter().any(|(_, manifest)| manifest.finished),
+        runners: runners(shards.iter().map(|(dir, _)| StudyFolder::new(dir.clone()).trials())),
     })
 }
 

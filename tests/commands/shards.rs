@@ -274,7 +274,7 @@ fn shards_of_other_experiments_are_refused_with_the_difference() {
         (&["own", "range"], "radio.range: 2.0 and 2.5"),
         (&["own", "study"], "one scenario and a study"),
         (&["study", "figure"], "figures: "),
-        (&["own", "empty"], "empty holds no trials of desim"),
+        (&["empty"], "empty holds no trials of desim"),
         (&["nowhere"], "nowhere holds no trials of desim"),
     ];
     for (folders, difference) in cases {
@@ -285,6 +285,9 @@ fn shards_of_other_experiments_are_refused_with_the_difference() {
         }
         assert!(!dir.path().join("merged").exists());
     }
+    // A shard that was killed at once has left nothing, and its trials are missing.
+    let words = refused(dir.path(), &["merge", "empty", "own", "--out", "merged"]);
+    assert!(words.contains("4 of 9 trials are missing: 1,3,5,7"), "{words}");
     let words = refused(dir.path(), &["merge", "own", "seed"]);
     assert!(words.contains("--out"), "{words}");
     let words = refused(

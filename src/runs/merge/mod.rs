@@ -13,6 +13,8 @@ pub use lack::{Lack, MissingTrials};
 
 use std::path::{Path, PathBuf};
 
+use sources::Shards;
+
 use super::scenario::ScenarioResults;
 use super::study::StudyResults;
 use crate::export::Pictures;
@@ -62,9 +64,8 @@ pub enum Merged {
 /// # Panics
 /// If there is no folder.
 pub fn merge(merge: &Merge) -> Result<Merged, MergeError> {
-    if sources::are_of_study(merge.dirs)? {
-        study::merge(merge)
-    } else {
-        scenario::merge(merge)
+    match sources::shards(merge.dirs)? {
+        Shards::Scenario(shards) => scenario::merge(merge, &shards),
+        Shards::Study(shards) => study::merge(merge, &shards),
     }
 }

@@ -1,6 +1,6 @@
 //! The shards of a scenario.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::error::MergeError;
 use super::lack::{Lack, MissingTrials};
@@ -11,13 +11,8 @@ use crate::runs::error::{Other, RunsError};
 use crate::runs::scenario::ScenarioResults;
 use crate::scenario::Scenario;
 
-pub fn merge(merge: &Merge) -> Result<Merged, MergeError> {
+pub fn merge(merge: &Merge, shards: &[(PathBuf, Manifest)]) -> Result<Merged, MergeError> {
     let out = Folder::new(merge.out.to_owned());
-    let mut shards = Vec::new();
-    for dir in sources::folders(merge.dirs, None) {
-        shards.push((dir.clone(), sources::manifest(&dir)?));
-    }
-    sources::agree(&shards)?;
     let (dir, _) = &shards[0];
     let manifest = sources::fullest(shards.iter().map(|(_, manifest)| manifest)).expect("at least one folder");
     let scenario = own(dir, &manifest)?;

@@ -18,8 +18,68 @@ pub fn folders(dirs: &[PathBuf], out: Option<&Path>) -> Vec<PathBuf> {
     all.filter(is_new).map(Path::to_owned).collect()
 }
 
-/// What a shard's folder is the result of.
-pub fn manifest(dir: &Path) -> Result<Manifest, MergeError> {
+/// What shards of one scenario or study have left, folder by folder.
+pub enum Shards {
+    /// Of a scenario.
+    Scenario(Vec<(PathBuf, Manifest)>),
+    /// Of a study.
+    Study(Vec<(PathBuf, StudyManifest)>),
+}
+
+/// What shards have left in `dirs`: in one folder at least, and all of one scenario or study, made by one version and program. A folder in which a
+/// shard has been killed before it said what it is of is left out.
+pub fn shards(dirs: &[PathBuf]) -> Result<Shards, MergeError> {
+    let mut begun = Vec::new();
+    for dir in folders(dirs, None) {
+        match Folder::new(dir.clone()).contents() {
+            Ok(Contents::Nothing) if dir.is_dir() => {}
+            _ => begun.push(dir),
+        }
+    }
+    let is_study = |dir: &PathBuf| StudyFolder::is_at(dir);
+    let first = begun.first().ok_or_else(|| MergeError::None(dirs[0].clone()))?;
+    if let Some(other) = begun.iter().find(|other| is_study(other) != is_study(first)) {
+        let kind = |dir| if is_study(dir) { "a study" } else { "one scenario" };
+        return Err(MergeError::Apart {
+            folders: [first.clone(), other.clone()],
+            differences: vec![format!("{} and {}", kind(first), kind(other))],
+        });
+    }
+    if is_study(first) {
+        agreeing(read(begun, study)?, study_differences).map(Shards::Study)
+    } else {
+        agreeing(read(begun, scenario)?, differences).map(Shards::Scenario)
+    }
+}
+
+/// What each folder is the result of, as `manifest` reads it.
+fn read<M>(
+    dirs: Vec<PathBuf>,
+    manifest: impl Fn(&Path) -> Result<M, MergeError>,
+) -> Result<Vec<(PathBuf, M)>, MergeError> {
+    let read = |dir: PathBuf| manifest(&dir).map(|manifest| (dir, manifest));
+    dirs.into_iter().map(read).collect()
+}
+
+/// The folders of a setting below those of a study, of those that have it, at least one; they agree.
+pub fn settings(studies: &[(PathBuf, StudyManifest)], name: &str) -> Result<Vec<(PathBuf, Manifest)>, MergeError> {
+    let mut there = Vec::new();
+    for dir in studies.iter().map(|(dir, _)| dir.join(name)) {
+        match scenario(&dir) {
+            Ok(manifest) => there.push((dir, manifest)),
+            // A shard that was killed at once has not come so far.
+            Err(MergeError::None(_)) => {}
+            Err(error) => return Err(error),
+        }
+    }
+    if there.is_empty() {
+        return Err(MergeError::None(studies[0].0.join(name)));
+    }
+    agreeing(there, differences)
+}
+
+/// What the folder of a scenario's shard is the result of.
+fn scenario(dir: &Path) -> Result<Manifest, MergeError> {
     match Folder::new(dir.to_owned()).contents() {
         Ok(Contents::Results(manifest)) => Ok(manifest),
         Ok(Contents::Nothing) | Err(FolderError::Foreign { .. } | FolderError::NotAFolder(_)) => {
@@ -29,40 +89,8 @@ pub fn manifest(dir: &Path) -> Result<Manifest, MergeError> {
     }
 }
 
-/// Whether all shards are of one scenario, made by one version and program.
-pub fn agree(shards: &[(PathBuf, Manifest)]) -> Result<(), MergeError> {
-    let Some(((first, asked), others)) = shards.split_first() else {
-        return Ok(());
-    };
-    for (dir, there) in others {
-        let fields = asked.scenario_differences(there);
-        let foreign = fields.iter().filter(|field| field.path != "trials");
-        let mut differences: Vec<String> = foreign
-            .map(
-                |Difference {
-                     path,
-                     values: [one, other],
-                 }| format!("{path}: {one} and {other}"),
-            )
-            .collect();
-        if asked.made_by() != there.made_by() {
-            differences.push(format!("{} and {}", asked.made_by(), there.made_by()));
-        }
-        if asked.program != there.program {
-            differences.push("two builds of this program, whose protocols may differ".to_owned());
-        }
-        if !differences.is_empty() {
-            return Err(MergeError::Apart {
-                folders: [first.clone(), dir.clone()],
-                differences,
-            });
-        }
-    }
-    Ok(())
-}
-
-/// What a folder of a study's shards is the result of.
-pub fn study(dir: &Path) -> Result<StudyManifest, MergeError> {
+/// What the folder of a study's shard is the result of.
+fn study(dir: &Path) -> Result<StudyManifest, MergeError> {
     match StudyFolder::new(dir.to_owned()).contents() {
         Ok(Some(manifest)) => Ok(manifest),
         Ok(None) | Err(FolderError::Foreign { .. } | FolderError::NotAFolder(_)) => {
@@ -72,51 +100,14 @@ pub fn study(dir: &Path) -> Result<StudyManifest, MergeError> {
     }
 }
 
-/// The folders of a setting below those of a study, of those that have it, at least one; they agree.
-pub fn settings(dirs: &[PathBuf], name: &str) -> Result<Vec<(PathBuf, Manifest)>, MergeError> {
-    let mut there = Vec::new();
-    for dir in dirs.iter().map(|dir| dir.join(name)) {
-        match manifest(&dir) {
-            Ok(manifest) => there.push((dir, manifest)),
-            // A shard that was killed at once has not come so far.
-            Err(MergeError::None(_)) => {}
-            Err(error) => return Err(error),
-        }
-    }
-    agree(&there)?;
-    if there.is_empty() {
-        return Err(MergeError::None(dirs[0].join(name)));
-    }
-    Ok(there)
-}
-
-/// Whether all shards are of one study, made by one version and program.
-pub fn agree_on_study(shards: &[(PathBuf, StudyManifest)]) -> Result<(), MergeError> {
-    let Some(((first, asked), others)) = shards.split_first() else {
-        return Ok(());
-    };
-    for (dir, there) in others {
-        let mut differences: Vec<String> = asked
-            .plan_differences(there)
-            .into_iter()
-            .filter(|field| !field.is_at("trials"))
-            .map(
-                |Difference {
-                     path,
-                     values: [one, other],
-                 }| format!("{path}: {one} and {other}"),
-            )
-            .collect();
-        if asked.made_by() != there.made_by() {
-            differences.push(format!("{} and {}", asked.made_by(), there.made_by()));
-        }
-        if asked.program != there.program {
-            differences.push("two builds of this program, whose protocols may differ".to_owned());
-        }
-        if asked.settings != there.settings {
-            let names = |manifest: &StudyManifest| manifest.settings.join(", ");
-            differences.push(format!("settings: {} and {}", names(asked), names(there)));
-        }
+/// The folders, if none differs from the first.
+fn agreeing<M>(
+    folders: Vec<(PathBuf, M)>,
+    differences: impl Fn(&M, &M) -> Vec<String>,
+) -> Result<Vec<(PathBuf, M)>, MergeError> {
+    let (first, asked) = &folders[0];
+    for (dir, there) in &folders[1..] {
+        let differences = differences(asked, there);
         if !differences.is_empty() {
             return Err(MergeError::Apart {
                 folders: [first.clone(), dir.clone()],
@@ -124,21 +115,52 @@ pub fn agree_on_study(shards: &[(PathBuf, StudyManifest)]) -> Result<(), MergeEr
             });
         }
     }
-    Ok(())
+    Ok(folders)
 }
 
-/// Whether the folders, at least one, are of a study, and not of one scenario.
-pub fn are_of_study(dirs: &[PathBuf]) -> Result<bool, MergeError> {
-    let is_study = |dir: &PathBuf| StudyFolder::is_at(dir);
-    let (first, others) = dirs.split_first().expect("at least one folder");
-    let Some(other) = others.iter().find(|other| is_study(other) != is_study(first)) else {
-        return Ok(is_study(first));
-    };
-    let kind = |dir| if is_study(dir) { "a study" } else { "one scenario" };
-    Err(MergeError::Apart {
-        folders: [first.clone(), other.clone()],
-        differences: vec![format!("{} and {}", kind(first), kind(other))],
-    })
+/// What keeps shards of scenarios apart, a line each. The number of trials does not: no trial depends on it.
+fn differences(one: &Manifest, other: &Manifest) -> Vec<String> {
+    let mut lines = lines(one.scenario_differences(other));
+    lines.extend(builds([
+        (one.made_by(), &one.program),
+        (other.made_by(), &other.program),
+    ]));
+    lines
+}
+
+/// What keeps shards of studies apart, a line each.
+fn study_differences(one: &StudyManifest, other: &StudyManifest) -> Vec<String> {
+    let mut lines = lines(one.plan_differences(other));
+    lines.extend(builds([
+        (one.made_by(), &one.program),
+        (other.made_by(), &other.program),
+    ]));
+    if one.settings != other.settings {
+        let names = |manifest: &StudyManifest| manifest.settings.join(", ");
+        lines.push(format!("settings: {} and {}", names(one), names(other)));
+    }
+    lines
+}
+
+fn lines(fields: Vec<Difference>) -> Vec<String> {
+    let foreign = fields.into_iter().filter(|field| !field.is_at("trials"));
+    let line = |Difference {
+                    path,
+                    values: [one, other],
+                }| format!("{path}: {one} and {other}");
+    foreign.map(line).collect()
+}
+
+/// How the versions and programs that made two folders differ.
+fn builds([one, other]: [(String, &Option<String>); 2]) -> Vec<String> {
+    let mut lines = Vec::new();
+    if one.0 != other.0 {
+        lines.push(format!("{} and {}", one.0, other.0));
+    }
+    if one.1 != other.1 {
+        lines.push("two builds of this program, whose protocols may differ".to_owned());
+    }
+    lines
 }
 
 /// Whether `out` is one of the folders.

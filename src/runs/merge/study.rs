@@ -15,17 +15,11 @@ use crate::runs::settings::Settings;
 use crate::runs::study::{StudyResults, manifest_of};
 use crate::scenario::Scenario;
 
-pub fn merge(merge: &Merge) -> Result<Merged, MergeError> {
+pub fn merge(merge: &Merge, shards: &[(PathBuf, StudyManifest)]) -> Result<Merged, MergeError> {
     let out = StudyFolder::new(merge.out.to_owned());
     let is_among = sources::is_among(merge.dirs, merge.out);
-    let dirs = sources::folders(merge.dirs, None);
-    let mut shards = Vec::new();
-    for dir in &dirs {
-        shards.push((dir.clone(), sources::study(dir)?));
-    }
-    sources::agree_on_study(&shards)?;
-    let (dir, manifest) = &fullest(&shards);
-    let scenarios = scenarios(&dirs, manifest)?;
+    let (dir, manifest) = &fullest(shards);
+    let scenarios = scenarios(shards, manifest)?;
     let (plan, until) = plan(dir, manifest, scenarios)?;
     let run = StudyRun { plan: &plan, until };
     let mut asked = manifest_of(&run);
@@ -129,9 +123,9 @@ fn fullest(shards: &[(PathBuf, StudyManifest)]) -> (PathBuf, StudyManifest) {
 }
 
 /// The scenarios of a study's settings, each from the folders that have it, which must agree.
-fn scenarios(dirs: &[PathBuf], manifest: &StudyManifest) -> Result<Vec<Scenario>, MergeError> {
+fn scenarios(shards: &[(PathBuf, StudyManifest)], manifest: &StudyManifest) -> Result<Vec<Scenario>, MergeError> {
     let of_setting = |name: &String| {
-        let there = sources::settings(dirs, name)?;
+        let there = sources::settings(shards, name)?;
         let (dir, manifest) = &there[0];
         scenario::own(dir, manifest)
     };
