@@ -171,17 +171,21 @@ fn bytes(record: &TrialRecord) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::path::Path;
+
     use tokio_util::sync::CancellationToken;
 
+    use super::*;
     use crate::experiment::run_trial;
-    use crate::scenario::parse;
+    use crate::scenario::{Override, load};
     use crate::simulation::DriverKind;
 
     /// A trial of a scenario with two robots, and the scenario.
     fn made_up() -> (Scenario, TrialRecord) {
-        let text = "Scenario(name: \"pair\", trials: 1, time_limit: 2.0, swarm: (robots: 2, deploy: Uniform), arena: (size: (1.0, 1.0)), protocol: Heartbeat)";
-        let scenario = parse("pair.ron", text, &[]).expect("a scenario");
+        let settings = ["trials=1", "time_limit=2.0", "swarm.robots=2"].map(str::parse);
+        let settings: Result<Vec<Override>, _> = settings.into_iter().collect();
+        let file = Path::new("scenarios/heartbeat.ron");
+        let scenario = load(file, &settings.expect("settings")).expect("a scenario");
         let record = run_trial(&scenario, 0, DriverKind::default(), &CancellationToken::new());
         (scenario, record.expect("a trial"))
     }
