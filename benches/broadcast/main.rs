@@ -1,4 +1,5 @@
-//! The `broadcast` workload: what a delivered frame costs, against a bare event loop that does the same and nothing else.
+//! The `broadcast` workload: what a delivered frame costs, against two bare event loops that do the same and nothing else:
+//! one of calendar rings, which is what can be reached, and one of a binary heap, which is what is mostly done.
 //!
 //! N robots stand still, uniform in a square in which a robot has 12 neighbours on average. Each broadcasts a 4-byte
 //! status every 0.1 s at a phase of its own. A copy is lost with probability 0.2, or arrives after a truncated normal
@@ -9,8 +10,10 @@
 //! `cargo bench` runs each program in a process of its own, in turn, several times, and prints the least of each and the
 //! ratios of those. `cargo bench -- --rounds 15` for more rounds.
 
-mod bare;
+mod heap;
+mod links;
 mod measure;
+mod rings;
 mod swarm;
 mod trial;
 mod workload;
@@ -24,9 +27,12 @@ use workload::{CELL_ROBOTS, Counts, Workload};
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
 
-const PROGRAMS: [&str; 3] = ["bare", "inline", "actors"];
+const PROGRAMS: [&str; 4] = ["rings", "heap", "inline", "actors"];
+/// Swarms from this size on take minutes: the heap, which falls behind ever further, is left out, and there are fewer rounds.
+const LARGE: u32 = 100_000;
+const LARGE_ROUNDS: usize = 3;
 const TRIALS: [&str; 2] = ["trial, inline", "trial, actors"];
-const SIZES: [u32; 3] = [80, 1_280, 20_480];
+const SIZES: [u32; 6] = [80, 1_280, 20_480, 100_000, 400_000, 1_000_000];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -50,7 +56,8 @@ fn run_one(program: &str, robots: u32) -> Sample {
         measure::sample(|| run(&workload))
     };
     match program {
-        "bare" => broadcast(bare::run),
+        "rings" => broadcast(rings::run),
+        "heap" => broadcast(heap::run),
         "inline" => broadcast(|workload| swarm::run(workload, DriverKind::Inline)),
         "actors" => broadcast(|workload| swarm::run(workload, DriverKind::Actors)),
         "disk" => measure::sample(|| swarm::run(&Workload::cell_over_disk(robots), DriverKind::Inline)),
@@ -68,18 +75,30 @@ fn compare(rounds: usize) {
     println!("User CPU of one process; least of {rounds} rounds, for whatever else a machine does only adds to it.\n");
     println!("broadcast: 12 neighbours, loss 0.2, latency 10 ± 3 ms, timeout 1.0 s; sends, losses and timers included");
     println!(
-        "{:>7}  {:7} {:>11} {:>12} {:>8} {:>16} {:>11}",
-        "robots", "program", "deliveries", "ns/delivery", "of bare", "peak memory", "suspicions"
+        "{:>7}  {:7} {:>11} {:>12} {:>9} {:>8} {:>16} {:>11}",
+        "robots", "program", "deliveries", "ns/delivery", "of rings", "of heap", "peak memory", "suspicions"
     );
     for robots in SIZES {
-        let results = measure::rounds(rounds, &PROGRAMS, robots);
-        for (program, samples) in PROGRAMS.iter().zip(&results) {
+        let is_large = robots >= LARGE;
+        let rounds = if is_large { rounds.min(LARGE_ROUNDS) } else { rounds };
+        let programs: Vec<&str> = PROGRAMS
+            .into_iter()
+            .filter(|program| !is_large || *program != "heap")
+            .collect();
+        let results = measure::rounds(rounds, &programs, robots);
+        let least = |wanted: &str| {
+            let of = programs.iter().zip(&results).find(|(program, _)| **program == wanted);
+            of.map(|(_, samples)| measure::least(samples))
+        };
+        for (program, samples) in programs.iter().zip(&results) {
             let nanos = measure::least(samples);
+            let of = |bare: &str| least(bare).map_or(String::new(), |bare| format!("{:.2}x", nanos / bare));
             let sample = &samples[0];
             println!(
-                "{robots:>7}  {program:7} {:>11} {nanos:>12.0} {:>7.2}x {:>7.2} kB/robot {:>11}",
+                "{robots:>7}  {program:7} {:>11} {nanos:>12.0} {:>9} {:>8} {:>7.2} kB/robot {:>11}",
                 sample.deliveries,
-                nanos / measure::least(&results[0]),
+                of("rings"),
+                of("heap"),
                 sample.peak_kib as f64 / f64::from(robots),
                 sample.suspicions,
             );

@@ -94,7 +94,13 @@ impl Workload {
         )
         .expect("a square of this density has room");
         along_a_curve(&mut poses, side_m);
-        let seconds = if robots < 1_280 { 60.0 } else { 6.0 };
+        // As long as it takes for a few seconds of work, and longer than the timeout.
+        let seconds = match robots {
+            ..1_280 => 60.0,
+            1_280..100_000 => 6.0,
+            100_000..1_000_000 => 3.0,
+            _ => 2.0,
+        };
         Self {
             arena,
             poses,
@@ -126,8 +132,8 @@ fn air(dbm: f64) -> RadioConfig {
     }))
 }
 
-/// Numbers robots along a Z-order curve, so that those that are near each other have near numbers: the bare loop keeps what it
-/// knows of them by number, and is to be as good as it can be. The numbers of a scenario's robots say nothing about places.
+/// Numbers robots along a Z-order curve, so that those that are near each other have near numbers: the bare loops keep what they
+/// know of them by number, and are to be as good as they can be. The numbers of a scenario's robots say nothing about places.
 fn along_a_curve(poses: &mut [Pose], side_m: f64) {
     let spread = |cell: u16| (0..u16::BITS).fold(0, |bits, place| bits | (u32::from(cell) >> place & 1) << (2 * place));
     let cell = |metres: f64| ((metres / side_m + 0.5) * f64::from(u16::MAX)) as u16;
