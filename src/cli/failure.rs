@@ -73,7 +73,9 @@ impl From<PartsError> for Failure {
     fn from(error: PartsError) -> Self {
         match error {
             PartsError::Busy(_) => Self::Input(format!("error: {error}")),
-            PartsError::Io { .. } | PartsError::Damaged { .. } => Self::other(&error),
+            PartsError::Io { .. } | PartsError::Damaged { .. } | PartsError::Contradiction { .. } => {
+                Self::other(&error)
+            }
         }
     }
 }
@@ -100,8 +102,6 @@ impl From<MergeError> for Failure {
     fn from(error: MergeError) -> Self {
         match error {
             MergeError::Runs(error) => error.into(),
-            // The machine is at fault, or the protocol: nothing that the user has chosen.
-            error @ MergeError::Contradiction { .. } => Self::other(&error),
             wrong => Self::Input(format!("error: {wrong}")),
         }
     }

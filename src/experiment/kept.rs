@@ -1,7 +1,5 @@
 //! Finished trials wherever they are kept: in one folder, or spread over those of several processes.
 
-use std::path::PathBuf;
-
 use super::part_file::FinishedTrial;
 use super::parts::{Parts, PartsError};
 
@@ -22,15 +20,6 @@ pub struct Found {
     pub damaged: Vec<PartsError>,
 }
 
-/// Two folders have trials of one number that differ.
-#[derive(Debug)]
-pub struct Contradiction {
-    /// Number of the trial.
-    pub trial: u32,
-    /// The folders.
-    pub folders: [PathBuf; 2],
-}
-
 impl Kept {
     /// All trials, in one folder.
     #[must_use]
@@ -45,7 +34,7 @@ impl Kept {
     ///
     /// # Errors
     /// If a trial is not, or a folder cannot be read.
-    pub fn among(folders: Vec<Parts>, trials: u32) -> Result<Result<(Self, Found), Contradiction>, PartsError> {
+    pub fn among(folders: Vec<Parts>, trials: u32) -> Result<(Self, Found), PartsError> {
         let mut there: Vec<Vec<u32>> = vec![Vec::new(); trials as usize];
         for (place, folder) in (0..).zip(&folders) {
             for trial in folder.there()? {
@@ -57,16 +46,11 @@ impl Kept {
         let mut found = Found::default();
         let mut places = Vec::new();
         for (trial, candidates) in (0..).zip(there) {
-            match choose(&folders, trial, &candidates, &mut found.damaged) {
-                Err(contradiction) => return Ok(Err(contradiction)),
-                Ok(Some(place)) => places.push(place),
-                Ok(None) => {
-                    found.missing.push(trial);
-                    places.push(0);
-                }
-            }
+            let place = choose(&folders, trial, &candidates, &mut found.damaged)?;
+            found.missing.extend(place.is_none().then_some(trial));
+            places.push(place.unwrap_or(0));
         }
-        Ok(Ok((Self { folders, places }, found)))
+        Ok((Self { folders, places }, found))
     }
 
     /// Reads a trial.
@@ -85,11 +69,11 @@ fn choose(
     trial: u32,
     places: &[u32],
     damaged: &mut Vec<PartsError>,
-) -> Result<Option<u32>, Contradiction> {
+) -> Result<Option<u32>, PartsError> {
     if let [place] = places {
         // Nothing to compare it with: it need not be read whole.
-        let opened = folders[*place as usize].open(trial);
-        let whole = opened.map_err(|wrong| damaged.push(wrong)).is_ok();
+        let verified = folders[*place as usize].verify(trial);
+        let whole = verified.map_err(|wrong| damaged.push(wrong)).is_ok();
         return Ok(whole.then_some(*place));
     }
     let mut first: Option<(u32, FinishedTrial)> = None;
@@ -105,7 +89,7 @@ fn choose(
             None => first = Some((place, part)),
             Some((own, known)) if known.record != part.record => {
                 let folders = [*own, place].map(|place| folders[place as usize].dir().to_owned());
-                return Err(Contradiction { trial, folders });
+                return Err(PartsError::Contradiction { trial, folders });
             }
             Some(_) => {}
         }

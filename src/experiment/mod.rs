@@ -15,7 +15,7 @@ mod trial;
 
 pub use crate::kind::TrialError;
 pub use claim::Claim;
-pub use kept::{Contradiction, Found, Kept};
+pub use kept::{Found, Kept};
 pub use part_file::{FinishedTrial, Key};
 pub use parts::{Parts, PartsError, replace};
 pub(crate) use run::run_trials;

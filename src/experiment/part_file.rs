@@ -101,8 +101,8 @@ fn write_apart(file: &File, key: Key, part: &FinishedTrial, lists: &mut Lists) -
     inner.flush()
 }
 
-/// Holds the whole file against its hash, and answers what it says of itself.
-pub fn verify(mut file: &File) -> io::Result<Label> {
+/// Holds the whole file against its hash, and leaves it at its beginning.
+pub fn verify(mut file: &File) -> io::Result<()> {
     let length = file.metadata()?.len();
     let Some(end) = length.checked_sub(HASH_LINE) else {
         return Err(io::Error::other("it has no hash"));
@@ -114,17 +114,21 @@ pub fn verify(mut file: &File) -> io::Result<Label> {
     if kept != hash_line(&whole.hash) {
         return Err(io::Error::other("it does not fit its hash"));
     }
-    file.rewind()?;
+    file.rewind()
+}
+
+/// What a file says of itself that has been [verified](verify).
+pub fn label(file: &File) -> io::Result<Label> {
     Ok(serde_json::from_slice(&head(file)?)?)
 }
 
-/// Reads a file that has been [verified](verify).
-pub fn read(file: File) -> io::Result<FinishedTrial> {
+/// Reads a file that has been [verified](verify): a trial, and what it is of.
+pub fn read(file: File) -> io::Result<(Key, FinishedTrial)> {
     let line = head(&file)?;
     let Head {
+        of,
         mut part,
         lists: shapes,
-        ..
     } = serde_json::from_slice::<Head<FinishedTrial>>(&line)?;
     let mut lists = Lists::default();
     let mut section = Section::of(file, line.len() as u64);
@@ -136,14 +140,13 @@ pub fn read(file: File) -> io::Result<FinishedTrial> {
         section = section.after(shape.bytes());
     }
     part.record.exchange(&mut lists);
-    Ok(part)
+    Ok((of, part))
 }
 
-/// The first line, from the beginning; the file is left there.
-fn head(mut file: &File) -> io::Result<Vec<u8>> {
+/// The first line of a file at its beginning.
+fn head(file: &File) -> io::Result<Vec<u8>> {
     let mut line = Vec::new();
     BufReader::new(file).read_until(b'\n', &mut line)?;
-    file.rewind()?;
     Ok(line)
 }
 

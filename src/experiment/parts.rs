@@ -42,6 +42,18 @@ pub enum PartsError {
         /// What is wrong.
         reason: String,
     },
+    /// Two folders have trials of one number that differ, which no seed explains.
+    #[error(
+        "trial {trial} in {} is not the same as in {}: a machine is at fault, or a protocol that is not deterministic",
+        shown(&.folders[0]),
+        shown(&.folders[1])
+    )]
+    Contradiction {
+        /// Number of the trial.
+        trial: u32,
+        /// The folders.
+        folders: [PathBuf; 2],
+    },
 }
 
 impl Parts {
@@ -60,8 +72,8 @@ impl Parts {
     /// Those of `trials` that are not here yet, in order. A file that cannot be read, or is of something else, counts as not here.
     #[must_use]
     pub fn missing(&self, trials: impl Iterator<Item = u32>) -> Vec<u32> {
-        let is_missing = |trial: &u32| match self.open(*trial) {
-            Ok(_) => false,
+        let is_missing = |trial: &u32| match self.verify(*trial) {
+            Ok(()) => false,
             Err(error) => {
                 tracing::debug!(trial, %error, "not finished");
                 true
@@ -110,28 +122,43 @@ impl Parts {
     /// If it is not there, or not what its name says.
     pub fn load(&self, trial: u32) -> Result<FinishedTrial, PartsError> {
         let file = self.open(trial)?;
-        part_file::read(file).map_err(|error| self.damaged(trial, error.to_string()))
+        let read = part_file::read(file).map_err(|error| self.damaged(trial, error.to_string()));
+        let (of, part) = read?;
+        self.identify(trial, of, part.record.trial)?;
+        Ok(part)
     }
 
-    /// Opens the file of a trial, which is as it was written.
+    /// Makes sure that the file of a trial is as it was written, and that trial's.
     ///
     /// # Errors
     /// As [`load`](Self::load).
-    pub(super) fn open(&self, trial: u32) -> Result<File, PartsError> {
+    pub(super) fn verify(&self, trial: u32) -> Result<(), PartsError> {
+        let file = self.open(trial)?;
+        let label = part_file::label(&file).map_err(|error| self.damaged(trial, error.to_string()))?;
+        self.identify(trial, label.of, label.trial())
+    }
+
+    /// Opens the file of a trial, which fits its hash.
+    fn open(&self, trial: u32) -> Result<File, PartsError> {
         let path = self.path(trial);
         if path.exists() && !path.is_file() {
             return Err(self.damaged(trial, "it is no file with an end".to_owned()));
         }
         let file = File::open(&path).map_err(failed("read", &path))?;
-        let label = part_file::verify(&file).map_err(|error| self.damaged(trial, error.to_string()))?;
-        if label.of != self.key {
+        part_file::verify(&file).map_err(|error| self.damaged(trial, error.to_string()))?;
+        Ok(file)
+    }
+
+    /// Makes sure that what a file holds, a trial of something, is this trial of what is kept here.
+    fn identify(&self, trial: u32, of: Key, there: u32) -> Result<(), PartsError> {
+        if of != self.key {
             let reason = "it is of another scenario, or of another version or program";
             return Err(self.damaged(trial, reason.to_owned()));
         }
-        if label.trial() != trial {
-            return Err(self.damaged(trial, format!("it holds trial {}", label.trial())));
+        if there != trial {
+            return Err(self.damaged(trial, format!("it holds trial {there}")));
         }
-        Ok(file)
+        Ok(())
     }
 
     fn damaged(&self, trial: u32, reason: String) -> PartsError {

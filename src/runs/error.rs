@@ -74,7 +74,7 @@ impl RunsError {
         match self {
             Self::Interrupted { .. } => Cause::Interruption,
             Self::Folder(FolderError::Io { .. })
-            | Self::Parts(PartsError::Io { .. } | PartsError::Damaged { .. })
+            | Self::Parts(PartsError::Io { .. } | PartsError::Damaged { .. } | PartsError::Contradiction { .. })
             | Self::Trial {
                 source: TrialError::Run(_) | TrialError::Counted(_),
                 ..

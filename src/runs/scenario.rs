@@ -20,6 +20,15 @@ pub struct ScenarioResults {
     pub manifest: Manifest,
 }
 
+impl ScenarioResults {
+    /// Those that are in a folder, finished.
+    pub(super) fn there(folder: &Folder, manifest: Manifest) -> Result<Self, RunsError> {
+        let summary = folder.summary(&manifest)?;
+        folder.tidy();
+        Ok(Self { summary, manifest })
+    }
+}
+
 /// Runs the trials of a scenario that are missing in the folder `dir`, and writes the results there; answers those that are there already.
 ///
 /// # Errors
@@ -32,10 +41,8 @@ pub fn run_scenario(
 ) -> Result<ScenarioResults, RunsError> {
     let folder = Folder::new(dir.to_owned());
     if let Some(manifest) = finished(&folder, run.scenario, options.replace)? {
-        let summary = folder.summary(&manifest)?;
-        folder.tidy();
         tell(Happening::There);
-        return Ok(ScenarioResults { summary, manifest });
+        return ScenarioResults::there(&folder, manifest);
     }
     simulate(&folder, run, options, &mut tell)
 }
@@ -50,7 +57,7 @@ pub(super) fn manifest_of(run: &ScenarioRun) -> Manifest {
 
 /// The manifest of the results asked for, if they are there and finished. The folder is then ready for the others: it
 /// holds nothing, or finished trials of the same experiment.
-fn finished(folder: &Folder, scenario: &Scenario, replace: bool) -> Result<Option<Manifest>, RunsError> {
+pub(super) fn finished(folder: &Folder, scenario: &Scenario, replace: bool) -> Result<Option<Manifest>, RunsError> {
     let there = match folder.contents() {
         Ok(Contents::Results(there)) => Some(there),
         Ok(Contents::Nothing) => {

@@ -79,7 +79,8 @@ fn trials(folders: &[(PathBuf, Manifest)]) -> Result<Trials, MergeError> {
     let of = scenario["trials"]
         .as_u64()
         .and_then(|trials| u32::try_from(trials).ok())
-        .unwrap_or(0);
+        .unwrap_or(0)
+        .min(Shard::MOST);
     let mut done = BTreeSet::new();
     for (dir, manifest) in folders {
         if manifest.finished {

@@ -80,7 +80,11 @@ fn described(run: &StudyRun) -> serde_json::Value {
 
 /// The comparison, if it is there and finished. The folder is then ready for the others: it holds nothing, or trials of the same
 /// study, whose files `asked` then names.
-fn finished(folder: &StudyFolder, asked: &mut StudyManifest, replace: bool) -> Result<Option<Comparison>, RunsError> {
+pub(super) fn finished(
+    folder: &StudyFolder,
+    asked: &mut StudyManifest,
+    replace: bool,
+) -> Result<Option<Comparison>, RunsError> {
     let there = match folder.contents() {
         Ok(Some(there)) => there,
         Ok(None) => return Ok(None),

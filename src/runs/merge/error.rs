@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::lack::Lack;
-use crate::experiment::{Contradiction, PartsError};
+use crate::experiment::PartsError;
 use crate::export::{FolderError, WriteError};
 use crate::runs::RunsError;
 use crate::text::shown;
@@ -32,18 +32,6 @@ pub enum MergeError {
         dir: PathBuf,
         /// The differences, a line each.
         differences: Vec<String>,
-    },
-    /// Two folders have trials of one number that differ, which no seed explains.
-    #[error(
-        "trial {trial} in {} is not the same as in {}: a machine is at fault, or a protocol that is not deterministic",
-        shown(&.folders[0]),
-        shown(&.folders[1])
-    )]
-    Contradiction {
-        /// Number of the trial.
-        trial: u32,
-        /// The folders.
-        folders: [PathBuf; 2],
     },
     /// Trials are missing.
     #[error("{0}")]
@@ -76,12 +64,6 @@ fn too_wide(figure: &str, width: f64, widest: Option<f64>, trials: u32, enough: 
          Run every shard again with --trials {enough}; finished trials are kept.",
         enough - trials
     )
-}
-
-impl From<Contradiction> for MergeError {
-    fn from(Contradiction { trial, folders }: Contradiction) -> Self {
-        Self::Contradiction { trial, folders }
-    }
 }
 
 impl From<FolderError> for MergeError {

@@ -35,6 +35,10 @@ pub fn plan(
         differences: vec![wrong],
     };
     let described = Described::deserialize(&manifest.plan).map_err(|error| foreign(error.to_string()))?;
+    // The name is that of a folder below the study's.
+    if let Some(name) = manifest.settings.iter().find(|name| name.contains(['/', '\\', '.'])) {
+        return Err(foreign(format!("the setting `{name}` leads out of the folder")));
+    }
     let settings = manifest.settings.len();
     if [described.levels.len(), described.trials.len(), scenarios.len()] != [settings; 3] {
         return Err(foreign("its plan is of other settings than it has".to_owned()));

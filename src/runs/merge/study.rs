@@ -6,28 +6,32 @@ use super::error::MergeError;
 use super::lack::{Lack, MissingTrials};
 use super::plan::plan;
 use super::{Merge, Merged, scenario, sources};
-use crate::experiment::{Claim, Kept};
-use crate::export::{Contents, Folder, FolderError, Manifest, StudyFolder, StudyManifest};
+use crate::experiment::Kept;
+use crate::export::{Contents, Folder, Manifest, StudyFolder, StudyManifest};
 use crate::metrics::comparison::{Comparison, Stopping};
 use crate::runs::asked::StudyRun;
-use crate::runs::error::{Other, RunsError};
 use crate::runs::settings::Settings;
-use crate::runs::study::{StudyResults, manifest_of};
+use crate::runs::study::{StudyResults, finished, manifest_of};
 use crate::scenario::Scenario;
 
 pub fn merge(merge: &Merge, shards: &[(PathBuf, StudyManifest)]) -> Result<Merged, MergeError> {
     let out = StudyFolder::new(merge.out.to_owned());
-    let is_among = sources::is_among(merge.dirs, merge.out);
     let (dir, manifest) = &fullest(shards);
     let scenarios = scenarios(shards, manifest)?;
     let (plan, until) = plan(dir, manifest, scenarios)?;
     let run = StudyRun { plan: &plan, until };
     let mut asked = manifest_of(&run);
-    let finished = finished(&out, &mut asked, merge.replace && !is_among)?;
-    let were_there = finished.is_some();
-    let comparison = match finished {
+    // What is to be replaced is left alone until all trials are found, and a shard is never replaced.
+    let replaces = merge.replace && !sources::is_among(merge.dirs, merge.out);
+    let there = if replaces {
+        None
+    } else {
+        finished(&out, &mut asked, false)?
+    };
+    let were_there = there.is_some();
+    let comparison = match there {
         Some(comparison) => comparison,
-        None => put_together(merge, &out, &run, asked, is_among)?,
+        None => put_together(merge, &out, &run, asked, replaces)?,
     };
     Ok(Merged::Study {
         results: StudyResults {
@@ -43,22 +47,21 @@ fn put_together(
     out: &StudyFolder,
     run: &StudyRun,
     mut manifest: StudyManifest,
-    is_among: bool,
+    replaces: bool,
 ) -> Result<Comparison, MergeError> {
-    let is_cleared = merge.replace && !is_among;
-    let looked_into = (!is_cleared).then_some(merge.out);
+    let looked_into = (!replaces).then_some(merge.out);
     let folders = sources::folders(merge.dirs, looked_into);
     let mut kept = Vec::new();
     let mut lack = Lack::default();
     for setting in &run.plan.settings {
         let own = || folders.iter().map(|dir| Folder::new(dir.join(&setting.name)));
         let key = Manifest::new(&setting.scenario).key();
-        let (there, found) = Kept::among(sources::parts(own(), key), setting.scenario.trials)??;
+        let (there, found) = Kept::among(sources::parts(own(), key), setting.scenario.trials)?;
         kept.push(there);
         // Of a setting whose results have been written the trials may be gone.
         let is_written =
             || matches!(out.setting(&setting.name).contents(), Ok(Contents::Results(there)) if there.finished);
-        if !found.missing.is_empty() && (is_cleared || !is_written()) {
+        if !found.missing.is_empty() && (replaces || !is_written()) {
             lack.damaged.extend(found.damaged);
             lack.of.push(MissingTrials {
                 setting: Some(setting.name.clone()),
@@ -71,8 +74,8 @@ fn put_together(
         lack.splits = sources::splits(folders.iter().map(|dir| StudyFolder::new(dir.clone()).trials()));
         return Err(MergeError::Missing(lack));
     }
-    if is_cleared {
-        clear(out, &manifest.settings)?;
+    if replaces {
+        finished(out, &mut manifest, true)?;
     }
     let mut settings = Settings::open(out, run, &manifest)?;
     let comparison = settings.compared();
@@ -130,43 +133,4 @@ fn scenarios(shards: &[(PathBuf, StudyManifest)], manifest: &StudyManifest) -> R
         scenario::own(dir, manifest)
     };
     manifest.settings.iter().map(of_setting).collect()
-}
-
-/// The comparison, if it is in the folder already, finished. The folder then holds nothing else but trials of this study, whose files `asked` then
-/// names, or what is to be replaced.
-fn finished(out: &StudyFolder, asked: &mut StudyManifest, replace: bool) -> Result<Option<Comparison>, MergeError> {
-    let there = match out.contents() {
-        Err(FolderError::Altered { .. } | FolderError::Version { .. }) if replace => return Ok(None),
-        there => there?,
-    };
-    let Some(there) = there.filter(|_| !replace) else {
-        return Ok(None);
-    };
-    let differences = there.differences(asked);
-    if !differences.is_empty() {
-        let dir = out.path().to_owned();
-        let of = Other::Study;
-        return Err(RunsError::Taken { dir, of, differences }.into());
-    }
-    if !there.finished {
-        asked.files = there.files;
-        return Ok(None);
-    }
-    let comparison = out.finished(&there)?;
-    out.hold_page(&there)?;
-    out.tidy(&there);
-    Ok(Some(comparison))
-}
-
-/// Deletes what is in the folder, at which nobody may be at work.
-fn clear(out: &StudyFolder, asked: &[String]) -> Result<(), MergeError> {
-    let there = out.contents().ok().flatten();
-    let settings = there.map_or_else(|| asked.to_vec(), |there| there.settings);
-    for name in &settings {
-        let trials = out.setting(name).trials();
-        if trials.exists() {
-            drop(Claim::lay(&trials)?);
-        }
-    }
-    Ok(out.clear(&settings)?)
 }
