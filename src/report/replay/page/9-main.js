@@ -54,7 +54,7 @@ function toggle(id) {
   box.dispatchEvent(new Event('change'));
 }
 
-const fragment = { next: 0, waiting: 0 };
+const fragment = { next: 0, waiting: 0, words: location.hash };
 
 /** Keeps the address up to date. Browsers refuse more than about a hundred changes in half a minute. */
 function noteFragment(soon) {
@@ -63,13 +63,16 @@ function noteFragment(soon) {
   fragment.waiting = setTimeout(() => {
     fragment.waiting = 0;
     fragment.next = performance.now() + 500;
-    const words = '#t=' + Number(now.t.toFixed(3)) + (now.followed >= 0 ? '&robot=' + now.followed : '');
-    if (location.hash !== words) history.replaceState(null, '', words);
+    // An address that somebody has just given is read first: its event is on its way.
+    if (location.hash !== fragment.words) return;
+    fragment.words = '#t=' + Number(now.t.toFixed(3)) + (now.followed >= 0 ? '&robot=' + now.followed : '');
+    if (location.hash !== fragment.words) history.replaceState(null, '', fragment.words);
   }, wait);
 }
 
 /** Goes where the address says. True if it names a time. */
 function readFragment() {
+  fragment.words = location.hash;
   const wanted = new URLSearchParams(location.hash.slice(1));
   const robot = wanted.has('robot') ? Number(wanted.get('robot')) : -1;
   if (robot !== now.followed) follow(robot);
