@@ -5,8 +5,8 @@
 //! frame before its fates are drawn: what is asked for then is there in time. At 20,480 robots this takes more than a third off
 //! the cost of a delivery; nothing depends on it, and where the processor has no such instruction it does nothing.
 
-/// Swarms up to so many robots stay in the cache, at a kilobyte or two a robot: asking would only cost time.
-const CACHED: usize = 2_000;
+/// Swarms up to so many robots stay in the cache, at a few kilobytes a robot: asking would only cost time.
+const CACHED: usize = 500;
 
 /// Bytes that travel together between memory and cache.
 const LINE: usize = 64;

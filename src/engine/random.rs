@@ -6,6 +6,8 @@
 
 use rand_philox::{Philox, splitmix64};
 
+use super::philox::{LANES, block, words, words_of_many};
+
 /// What a stream is used for. Two purposes never share a draw.
 ///
 /// Each module names its own, as a constant: `const LOSS: Purpose = Purpose::new("radio.loss");`.
@@ -74,34 +76,25 @@ impl KeyedStreams {
     #[inline]
     #[must_use]
     pub fn first_two(&self, a: u32, b: u32, sequence: u32) -> [u64; 2] {
-        let [first_low, first_high, second_low, second_high] = block([0, sequence, b, a], self.key).map(u64::from);
-        [first_low | first_high << 32, second_low | second_high << 32]
+        words(block([0, sequence, b, a], self.key))
     }
-}
 
-/// The block function of Philox4x32-10 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", 2011). The generator's crate has it as well; here it
-/// is always inlined, so that a loop over the keys of many copies becomes one over vectors of them: whether the other is inlined hangs on
-/// what else is in the caller, and costs a tenth of a run where it is not.
-#[allow(clippy::inline_always)]
-#[inline(always)]
-fn block(mut counter: [u32; 4], mut key: [u32; 2]) -> [u32; 4] {
-    const MULTIPLIERS: [u32; 2] = [0xD251_1F53, 0xCD9E_8D57];
-    const WEYL: [u32; 2] = [0x9E37_79B9, 0xBB67_AE85];
-    for _ in 0..10 {
-        let [a, b, c, d] = counter;
-        let [first, second] = [
-            u64::from(a) * u64::from(MULTIPLIERS[0]),
-            u64::from(c) * u64::from(MULTIPLIERS[1]),
-        ];
-        counter = [
-            (second >> 32) as u32 ^ b ^ key[0],
-            second as u32,
-            (first >> 32) as u32 ^ d ^ key[1],
-            first as u32,
-        ];
-        key = [key[0].wrapping_add(WEYL[0]), key[1].wrapping_add(WEYL[1])];
+    /// The word that `next_u64` of [`at`](Self::at) would give the `nth` time, counted from 0, without those before it.
+    #[must_use]
+    pub fn word(&self, [a, b, sequence]: [u32; 3], nth: u32) -> u64 {
+        words(block([nth / 2, sequence, b, a], self.key))[nth as usize % 2]
     }
-    counter
+
+    /// Puts the [first two words](Self::first_two) of the streams of `a` towards each of `others` into the empty `into`: several at a time.
+    #[inline]
+    pub fn first_two_towards(&self, a: u32, others: &[u32], sequence: u32, into: &mut Vec<[u64; 2]>) {
+        for others in others.chunks(LANES) {
+            let mut thirds = [0; LANES];
+            thirds[..others.len()].copy_from_slice(others);
+            let words = words_of_many([0, sequence, a], &thirds, self.key);
+            into.extend_from_slice(&words[..others.len()]);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -112,25 +105,6 @@ mod tests {
 
     const LOSS: Purpose = Purpose::new("test.loss");
     const LATENCY: Purpose = Purpose::new("test.latency");
-
-    #[test]
-    fn the_block_function_gives_the_published_known_answers() {
-        assert_eq!(
-            rand_philox::philox4x32_10([0; 4], [0; 2]),
-            [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]
-        );
-        assert_eq!(
-            rand_philox::philox4x32_10([u32::MAX; 4], [u32::MAX; 2]),
-            [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd]
-        );
-    }
-
-    proptest! {
-        #[test]
-        fn our_block_function_is_that_of_the_generator(counter: [u32; 4], key: [u32; 2]) {
-            prop_assert_eq!(block(counter, key), rand_philox::philox4x32_10(counter, key));
-        }
-    }
 
     #[test]
     fn a_stream_depends_on_every_part_of_its_key_and_on_nothing_else() {
@@ -156,6 +130,26 @@ mod tests {
         let streams = Streams::new(1, 2).keyed(LOSS);
         let mut stream = streams.at(7, 1 << 31, 5);
         assert_eq!(streams.first_two(7, 1 << 31, 5), [stream.next_u64(), stream.next_u64()]);
+    }
+
+    #[test]
+    fn the_nth_word_is_that_of_the_stream() {
+        let streams = Streams::new(1, 2).keyed(LOSS);
+        let mut stream = streams.at(7, 1 << 31, 5);
+        for nth in 0..9 {
+            assert_eq!(streams.word([7, 1 << 31, 5], nth), stream.next_u64(), "{nth}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn words_towards_many_are_those_towards_each(others in prop::collection::vec(any::<u32>(), 0..30), a: u32, sequence: u32) {
+            let streams = Streams::new(1, 2).keyed(LOSS);
+            let mut words = Vec::new();
+            streams.first_two_towards(a, &others, sequence, &mut words);
+            let singly: Vec<_> = others.iter().map(|other| streams.first_two(a, *other, sequence)).collect();
+            prop_assert_eq!(words, singly);
+        }
     }
 
     #[test]

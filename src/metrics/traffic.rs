@@ -97,7 +97,7 @@ pub(super) struct Traffic {
     received: Ledger,
     /// Takes no room before the first.
     duplicate: Ledger,
-    /// A table for each cause, in the order of their numbers. Those of causes that the disk radio hardly has take no room before the first.
+    /// A table for each cause, in the order of their numbers. Only what the channel drops has its room from the start: where nothing fails there are no others.
     lost: [Ledger; LossCause::ALL.len()],
     /// Where the cells of each robot's present role begin in these tables.
     starts: Vec<u32>,
@@ -115,7 +115,7 @@ impl Traffic {
             received: Ledger::new(cells),
             duplicate: Ledger::default(),
             lost: LossCause::ALL.map(|cause| match cause {
-                LossCause::Channel | LossCause::LinkFault | LossCause::ReceiverDown => Ledger::new(cells),
+                LossCause::Channel => Ledger::new(cells),
                 _ => Ledger::default(),
             }),
             starts: (0..robots).map(|robot| (robot * roles * topics) as u32).collect(),
@@ -176,7 +176,7 @@ impl Traffic {
     #[inline]
     pub(super) fn lost(&mut self, robot: ActorId, topic: Topic, cause: LossCause, size: MessageSize) {
         let cell = self.cell(robot, topic);
-        if cause > LossCause::ReceiverDown {
+        if cause != LossCause::Channel {
             let cells = self.sent.counts.len();
             self.lost[cause as usize].counts.resize(cells, Count::default());
         }

@@ -29,12 +29,6 @@ impl FrameCopy {
         streams.at(self.sender.0, self.receiver.0, self.sequence)
     }
 
-    /// What this copy meets in its channel: 64 bits that decide its loss, and the first 64 of its latency.
-    #[inline]
-    pub fn channel(self, streams: KeyedStreams) -> [u64; 2] {
-        streams.first_two(self.sender.0, self.receiver.0, self.sequence)
-    }
-
     /// Whether something of this `probability` happens to this copy.
     ///
     /// One uniform decides, the same whatever the probability, so that what happens at 0.1 also happens at 0.3.
@@ -49,11 +43,11 @@ impl FrameCopy {
 }
 
 /// The bits of a copy's stream after those that decide its loss. Nearly every latency takes 64 of them, which came with the
-/// loss in one block of the generator; only what takes more opens the stream.
+/// loss in one block of the generator.
 #[derive(Debug)]
 pub(super) struct LatencyBits {
-    next: Option<u64>,
-    later: Option<Philox>,
+    first: u64,
+    drawn: u32,
     copy: FrameCopy,
     streams: KeyedStreams,
 }
@@ -63,8 +57,8 @@ impl LatencyBits {
     #[inline]
     pub fn new(first: u64, copy: FrameCopy, streams: KeyedStreams) -> Self {
         Self {
-            next: Some(first),
-            later: None,
+            first,
+            drawn: 0,
             copy,
             streams,
         }
@@ -72,23 +66,24 @@ impl LatencyBits {
 
     #[inline]
     fn bits(&mut self) -> u64 {
-        match self.next.take() {
-            Some(bits) => bits,
-            None => self.later_bits(),
+        self.drawn += 1;
+        if self.drawn == 1 {
+            return self.first;
         }
+        let FrameCopy {
+            sender,
+            receiver,
+            sequence,
+        } = self.copy;
+        later_bits(sender.0, receiver.0, sequence, self.streams, self.drawn)
     }
+}
 
-    #[cold]
-    #[inline(never)]
-    fn later_bits(&mut self) -> u64 {
-        let Self { copy, streams, .. } = *self;
-        let stream = self.later.get_or_insert_with(|| {
-            let mut stream = copy.stream(streams);
-            let _ = [stream.next_u64(), stream.next_u64()];
-            stream
-        });
-        stream.next_u64()
-    }
+/// The `nth` word of a stream. Apart, and told all that it needs, so that what is drawn once stays in registers.
+#[cold]
+#[inline(never)]
+fn later_bits(sender: u32, receiver: u32, sequence: u32, streams: KeyedStreams, nth: u32) -> u64 {
+    streams.word([sender, receiver, sequence], nth)
 }
 
 impl TryRng for LatencyBits {

@@ -53,6 +53,15 @@ impl Latency {
         }
     }
 
+    /// How to draw from the law that is named most, if it is that one: a loop of its own keeps all that it needs in registers.
+    #[inline]
+    pub fn normal(&self) -> Option<impl Fn(&mut LatencyBits) -> Span + use<>> {
+        let Model::Random(Law::Normal { mean, std_dev, min }) = self.model else {
+            return None;
+        };
+        Some(move |random: &mut LatencyBits| Span::from_secs(truncated_normal(mean, std_dev, min, random)))
+    }
+
     /// The latency of a copy, drawn from `channel`, its own stream, and rounded to the nearest nanosecond.
     #[inline]
     pub fn draw(&self, channel: &mut LatencyBits) -> Span {

@@ -50,9 +50,12 @@ impl Loss {
         Self { model }
     }
 
-    /// Whether no copy is ever lost.
-    pub fn is_none(&self) -> bool {
-        matches!(self.model, Model::Bernoulli(probability) if probability == 0.0)
+    /// The probability, if it is the same for every copy.
+    pub fn same_for_all(&self) -> Option<f64> {
+        match self.model {
+            Model::Bernoulli(probability) => Some(probability),
+            Model::GilbertElliott(_) | Model::Distance { .. } => None,
+        }
     }
 
     /// The probability that the channel drops `copy`, which has the square root of `distance_squared` metres to go.

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::engine::{SimTime, prefetch, prefetch_all, prefetch_end};
+use crate::engine::{SimTime, prefetch, prefetch_all, prefetch_end, push_tight};
 use crate::protocol::{Frame, Reception};
 use crate::radio::FrameId;
 
@@ -48,12 +48,13 @@ impl<M> Inbox<M> {
     #[inline]
     pub fn push(&mut self, reception: Reception<M>) {
         self.latest = self.latest.max(reception.at);
-        self.waiting.push(reception);
+        push_tight(&mut self.waiting, reception);
     }
 
     /// Moves what has arrived by `now` into the empty `arrived`, in order of arrival, then of sender and its sequence.
     pub fn take_arrived(&mut self, now: SimTime, arrived: &mut Vec<Reception<M>>) {
-        std::mem::swap(&mut self.waiting, arrived);
+        // Moved and not exchanged: so an inbox stays where it is in memory, and as large as its robot needs it, and what is read is in the cache.
+        arrived.append(&mut self.waiting);
         if self.latest > now {
             // Few are still under way when a robot wakes: they go back.
             self.latest = SimTime::ZERO;

@@ -1,6 +1,6 @@
 //! What became of the statuses of late: kept so that a suspicion can be traced to them, and no longer.
 
-use crate::engine::{ActorId, SimTime, Span, prefetch, prefetch_end};
+use crate::engine::{ActorId, SimTime, Span, prefetch, prefetch_end, push_tight};
 use crate::happenings::Inbox;
 use crate::protocol::Reception;
 use crate::radio::LossCause;
@@ -103,19 +103,20 @@ impl StatusLog {
             return;
         }
         let sender = &mut self.senders[sender.index()];
-        // What is too old goes half a memory at a time, so that a push is mostly a push.
-        if sender.since + self.memory + self.memory / 2 < now {
+        // What is too old goes a quarter of the memory at a time, so that a push is mostly a push.
+        if sender.since + self.memory + self.memory / 4 < now {
             sender.forget_before(now - self.memory);
         }
         if sender.sent.is_empty() {
             sender.since = now;
             sender.first.get_or_insert(sequence);
         }
-        sender.sent.push(Sent {
+        let status = Sent {
             sequence,
             to: to.map_or(EVERYONE, |robot| robot.0),
             at: now,
-        });
+        };
+        push_tight(&mut sender.sent, status);
     }
 
     /// The copy of a status that was meant for `receiver` is lost.
@@ -125,7 +126,7 @@ impl StatusLog {
             return;
         }
         let lost = &mut self.senders[sender.index()].lost;
-        lost.push(Lost::new(receiver, sequence, cause));
+        push_tight(lost, Lost::new(receiver, sequence, cause));
     }
 
     /// What became at `observer`, until `now`, of the statuses that `subject` sent after its frame number `sequence` and

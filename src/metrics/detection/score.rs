@@ -1,6 +1,6 @@
 //! Beliefs held against the truth, as both change.
 
-use crate::engine::{ActorId, SimTime, Span};
+use crate::engine::{ActorId, SimTime, Span, push_tight};
 use crate::faults::Health;
 use crate::happenings::Inbox;
 use crate::motion::World;
@@ -219,8 +219,8 @@ impl Scorer {
             pair.mistaken = false;
         }
         pair.resume(now, able);
-        self.pairs[observer.index()].push(pair);
-        self.watchers[subject.index()].push(observer);
+        push_tight(&mut self.pairs[observer.index()], pair);
+        push_tight(&mut self.watchers[subject.index()], observer);
     }
 
     fn suspect(&mut self, suspicion: &Suspicion) {
