@@ -52,7 +52,7 @@ pub(super) fn words_of_many(
     lanes([first, second, fourth], thirds, key)
 }
 
-/// [`lanes`] for processors that have vectors of 256 bits: CALIBRATE.
+/// [`lanes`] for processors that have vectors of 256 bits: with loops of its own for the disk's models a twentieth off a delivery.
 #[cfg(target_arch = "x86_64")]
 #[allow(unsafe_code)]
 #[inline]

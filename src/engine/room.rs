@@ -1,6 +1,6 @@
 //! Room for lists of which every actor has one.
 
-/// Entries that a list has room for at least once it has one.
+/// Entries by which a list grows at least.
 const FEWEST: usize = 4;
 
 /// Adds `value` to a `list` that grows by half and not twofold where it is full: with a million of them what stands empty counts.

@@ -165,6 +165,10 @@ impl Alarms {
     pub fn set_timer(&mut self, id: TimerId, due: Option<SimTime>, now: SimTime) {
         self.timers.retain(|timer| timer.0 != id);
         if let Some(due) = due {
+            if self.timers.is_empty() {
+                // Most robots never have more than one.
+                self.timers.reserve_exact(1);
+            }
             self.timers.push((id, due.max(now)));
         }
     }
