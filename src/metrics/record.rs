@@ -4,11 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::{ActorId, SimTime, Span};
 use crate::geometry::{Pose, Vec2};
-use crate::radio::{Placed, Reach};
+use crate::radio::Reach;
 use crate::spool::{Entry, Spool, Spooled, entry};
 
 use super::air::AirRecord;
 use super::asked::Asked;
+use super::connectivity::Graph;
 use super::detection::{DetectionRecord, ObservedFailure, StatusTrace, Suspicion};
 use super::episode::{FaultEpisode, HealingEpisode};
 use super::latency::LatencyHistogram;
@@ -16,6 +17,9 @@ use super::noted::Noted;
 use super::pairs::PairRecord;
 use super::spread::RumorSpread;
 use super::volume::{TopicFates, TrafficRow};
+
+/// Robots of which pictures are drawn, at most.
+const MOST_DRAWN: usize = 20_000;
 
 /// Everything that one trial leaves behind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -139,17 +143,25 @@ impl TrialRecord {
         robots
     }
 
-    /// The places at the end of every two robots that hear each other as `reach` says.
+    /// The places at the end of every two robots that hear each other as `reach` says, in order of their numbers.
     #[must_use]
     pub fn links_at_end(&self, reach: &Reach) -> Vec<(Vec2, Vec2)> {
-        let places = self.robots.iter().map(|robot| robot.pose.position);
-        let robots: Vec<Placed> = (0..).map(ActorId).zip(places).collect();
-        let mut links = Vec::new();
-        for (index, &robot) in robots.iter().enumerate() {
-            let linked = robots[index + 1..].iter().filter(|other| reach.linked(robot, **other));
-            links.extend(linked.map(|other| (robot.1, other.1)));
-        }
-        links
+        let place = |robot: ActorId| self.robots[robot.index()].pose.position;
+        let robots = (0..self.robots.len() as u32).map(ActorId);
+        let (graph, vertices) = Graph::with_robots(robots.map(|robot| (robot, place(robot))), reach);
+        let ends = graph
+            .edges()
+            .iter()
+            .map(|edge| edge.map(|vertex| vertices[vertex as usize]));
+        let mut links: Vec<[ActorId; 2]> = ends.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        links.sort_unstable();
+        links.into_iter().map(|[a, b]| (place(a), place(b))).collect()
+    }
+
+    /// Whether its robots are few enough for a picture: of more nothing could be made out, and it would be longer than all tables together.
+    #[must_use]
+    pub fn can_be_drawn(&self) -> bool {
+        self.robots.len() <= MOST_DRAWN
     }
 
     /// Robots that ended in another role than the one that all start in: those that the mission took. `None` where

@@ -19,7 +19,7 @@ pub const STEPS: f64 = 1e8;
 /// Control steps of all robots in a trial.
 pub const ROBOT_STEPS: f64 = 1e10;
 /// Bytes of memory that a trial may take by the estimate, and those from which it is warned of.
-pub const MEMORY: f64 = 8e9;
+pub const MEMORY: f64 = 16e9;
 /// See [`MEMORY`].
 pub const MUCH_MEMORY: f64 = 2e9;
 /// Events of a trial by the estimate: a processor takes about a day for 1e12.

@@ -19,9 +19,13 @@ use crate::radio::Reach;
 
 impl Scene {
     /// The pictures of a trial in which robots were in range of each other as `reach` says, with their kinds. Where its robots ended: by role, with
-    /// the links within range (as in the paper's figure 2) and the chains to each target. And their paths, by their roles at the end.
+    /// the links within range (as in the paper's figure 2) and the chains to each target. And their paths, by their roles at the end. None of a swarm
+    /// that is too large to be [drawn](TrialRecord::can_be_drawn).
     #[must_use]
     pub fn draw(&self, record: &TrialRecord, reach: &Reach) -> Vec<(&'static str, String)> {
+        if !record.can_be_drawn() {
+            return Vec::new();
+        }
         let [last, paths] = PICTURES;
         vec![
             (last, format!("{}\n", final_state::draw(self, record, reach))),

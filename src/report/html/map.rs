@@ -18,9 +18,9 @@ use crate::radio::Reach;
 
 const HEIGHT: u32 = 460;
 
-/// Where the robots of the first trial ended, how they are linked and what they carried.
+/// Where the robots of the first trial ended, how they are linked and what they carried: of a swarm that can be drawn.
 pub fn traffic(input: &PageInput) -> Option<Figure> {
-    let record = input.records().first()?;
+    let record = input.records().first().filter(|record| record.can_be_drawn())?;
     record.robots.first()?;
     let loads = WAYS.map(|(.., bytes)| record.bytes_per_step(bytes));
     let mut table = DataTable::new(&["robot", "role", "x, m", "y, m", "sent, B/step", "received, B/step"]);

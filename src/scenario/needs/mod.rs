@@ -35,6 +35,8 @@ const CARRIED: f64 = 400.0;
 /// Of how long a mistake lasted, and of how a target stood in a sample: that is all in memory in the end.
 const TIME: f64 = 22.0;
 const STAND: f64 = 50.0;
+/// Of a number in the factor of a matrix.
+const ENTRY: f64 = 8.0;
 /// Of an entry of a list: a suspicion, and a sample.
 const LISTED: f64 = 100.0;
 /// Of a finished trial until all are, and of a robot in it; its other numbers are in a file.
@@ -178,6 +180,13 @@ impl Needs {
                 field: "metrics.sample_interval",
                 also: &["time_limit", "swarm.robots"],
                 help: "make `metrics.sample_interval` longer",
+            },
+            Share {
+                what: "λ₂ of their graph",
+                bytes: view.factor() * ENTRY,
+                field: "metrics.sample_interval",
+                also: &["swarm.robots", "radio.range", "swarm.deploy", "arena.size"],
+                help: "set `metrics.sample_interval` to 0: then there are no samples, and no λ₂",
             },
             Share {
                 what: "the series of traffic",

@@ -16,6 +16,8 @@ use crate::radio::{LossChain, LossConfig};
 /// Of a status sent lately, and of a lost copy of it, in lists that double.
 const STATUS: f64 = 32.0;
 const LOST: f64 = 16.0;
+/// Vectors that an iteration to λ₂ keeps.
+const ITERATED: f64 = 30.0;
 /// Of a failed robot at an observer, and of a failure.
 const OBSERVED: f64 = 250.0;
 const FAILURE: f64 = 1500.0;
@@ -95,6 +97,17 @@ impl<'a> View<'a> {
     pub fn placed(&self) -> f64 {
         let wanted = self.scenario.metrics.record.contains(&AskedTable::Delivery);
         if wanted { self.copies() } else { 0.0 }
+    }
+
+    /// Numbers in the factor that λ₂ is found by, and in what is iterated with it: of each robot, as many as stand in a strip across a square
+    /// swarm that is as wide as the range.
+    pub fn factor(&self) -> f64 {
+        let strip = (self.robots * self.neighbours / PI).sqrt();
+        if self.samples > 0.0 {
+            self.robots * (strip + ITERATED)
+        } else {
+            0.0
+        }
     }
 
     fn moves(&self) -> bool {

@@ -46,6 +46,39 @@ fn a_run_reports_and_says_where_its_results_are() {
     assert!(dir.path().join("results/small/trials.parquet").exists());
 }
 
+/// Tables of any swarm, a map and pictures of one in which something could be made out.
+#[test]
+fn a_swarm_that_is_too_large_to_be_drawn_has_its_tables_and_no_pictures() {
+    let dir = tempdir().unwrap();
+    for robots in [20_000, 20_001] {
+        let name = format!("swarm_{robots}");
+        let scenario = format!(
+            "Scenario(name: \"{name}\", time_limit: 0.1, arena: (size: (200.0, 200.0)), swarm: (robots: {robots}, deploy: Uniform),
+             radio: (range: 1.0), protocol: Heartbeat, metrics: (sample_interval: 0.0))"
+        );
+        fs::write(dir.path().join("large.ron"), scenario).unwrap();
+        desim(dir.path(), &["scenario", "large.ron", "--quiet"])
+            .assert()
+            .success();
+        let folder = format!("results/{name}");
+        desim(dir.path(), &["report", &folder]).assert().success();
+        let is_drawn = robots == 20_000;
+        for (file, is_there) in [
+            ("robots.parquet", true),
+            ("final_0.svg", is_drawn),
+            ("trajectories_0.svg", is_drawn),
+        ] {
+            assert_eq!(
+                dir.path().join(&folder).join(file).exists(),
+                is_there,
+                "{file} of {robots}"
+            );
+        }
+        let page = fs::read_to_string(dir.path().join(&folder).join("report.html")).unwrap();
+        assert_eq!(page.contains("The swarm with its traffic"), is_drawn, "{robots}");
+    }
+}
+
 #[test]
 fn json_is_one_document_and_the_summary_on_disk() {
     let dir = place();
