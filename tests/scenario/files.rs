@@ -233,15 +233,15 @@ fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_
     let lossy = [heartbeat, "detector=Timeout(0.15)", "radio.loss=Bernoulli(0.4)"];
     for (given, field, what) in [
         // 40 robots in a cluster, all in range: 1,560 pairs err (1 − p) p / η = 2.4 times a second each.
-        (vec!["time_limit=1.2e5"], "time_limit", "for suspicions"),
+        (vec!["time_limit=2.4e5"], "time_limit", "for suspicions"),
         (
-            vec!["radio.loss=None", "time_limit=4e5", "metrics.sample_interval=0.001"],
+            vec!["radio.loss=None", "time_limit=8e5", "metrics.sample_interval=0.001"],
             "metrics.sample_interval",
             "for samples",
         ),
         (vec!["trials=1000000"], "trials", "for the other trials"),
         (
-            vec!["radio.latency=Constant(4900)", "time_limit=5000", "detector=Timeout(9)"],
+            vec!["radio.latency=Constant(9900)", "time_limit=10000", "detector=Timeout(9)"],
             "radio.latency",
             "under way",
         ),
@@ -252,10 +252,22 @@ fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_
                 "gossip.status.interval=5",
                 "swarm.robots=500000",
                 "swarm.deploy=Uniform",
-                "arena.size=(300, 300)",
+                "arena.size=(200, 200)",
+                "metrics.sample_interval=0",
             ],
             "swarm.robots",
             "whom they hear",
+        ),
+        (
+            vec![
+                "detector=Timeout(1)",
+                "swarm.robots=1000000",
+                "swarm.deploy=Uniform",
+                "arena.size=(1030, 1030)",
+                "metrics.sample_interval=10",
+            ],
+            "metrics.sample_interval",
+            "for λ₂ of their graph",
         ),
     ] {
         let all: Vec<&str> = lossy.iter().copied().chain(given.iter().copied()).collect();
