@@ -2,6 +2,7 @@
 """Prints the scorecard: every claim of the paper's section 5, what we found, and whether the two agree.
 
     python analysis/scorecard.py
+    python analysis/scorecard.py --list      # what is to be judged, by which rule and margin, and under which readings
 
 Reads results/ where `run_paper.py` has left all runs of a figure with all their trials, and brings
 results/paper/figures.json up to date with them. Takes what is missing from that file as committed, which needs nothing
@@ -14,10 +15,11 @@ import argparse
 import json
 import sys
 import textwrap
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from paper import claims
+from paper import claims, stated
 from paper.evaluation import ROOT, TRIALS
 from paper.verdict import AGREES, CANNOT_SAY, DIFFERS
 
@@ -84,9 +86,27 @@ def totals(card: list[dict[str, Any]]) -> str:
     return f"Of {len(predictions)} predictions: {', '.join(counts)}. {len(fitted)} more claims are what was fitted."
 
 
+def listed() -> Iterator[str]:
+    """Every claim with its rule, and every reading."""
+    for claim in stated.claims():
+        paper = "in words" if claim.paper is None else f"{claim.paper:g}"
+        yield from textwrap.wrap(f"{claim.key:<18}  {claim.says} ({claim.section})", WIDTH, subsequent_indent=" " * 20)
+        facts = f"{claim.measured}: paper {paper}; agrees {claim.judged()}; runs: {claim.runs}"
+        yield from textwrap.wrap(facts, WIDTH, initial_indent=" " * 20, subsequent_indent=" " * 20)
+    yield ""
+    for reading in stated.readings():
+        facts = f"targets {reading.targets}; deployed in {reading.deployment}; speed {reading.speed} ({reading.why})"
+        yield from textwrap.wrap(f"{reading.key:<18}  {facts}", WIDTH, subsequent_indent=" " * 20)
+
+
 def main(given: list[str]) -> int:
     """Always 0: a difference from the paper is a finding, not a failure."""
-    options = parser(__doc__).parse_args(given)
+    made = parser(__doc__)
+    made.add_argument("--list", action="store_true", help="print the claims and readings, which were written down before any run")
+    options = made.parse_args(given)
+    if options.list:
+        print("\n".join(listed()))
+        return 0
     card = claims.scorecard(figures(options.results, options.out, options.trials))
     text = json.dumps(card, indent=1, ensure_ascii=False)
     (options.out / "scorecard.json").write_text(text + "\n", encoding="utf-8")
