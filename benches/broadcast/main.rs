@@ -72,7 +72,9 @@ fn run_one(program: &str, robots: u32) -> Sample {
 }
 
 fn compare(rounds: usize) {
-    println!("User CPU of one process; least of {rounds} rounds, for whatever else a machine does only adds to it.\n");
+    println!(
+        "User CPU of one process; least of {rounds} rounds, of {LARGE_ROUNDS} from {LARGE} robots on, for whatever else a machine does only adds to it.\n"
+    );
     println!("broadcast: 12 neighbours, loss 0.2, latency 10 ± 3 ms, timeout 1.0 s; sends, losses and timers included");
     println!(
         "{:>7}  {:7} {:>11} {:>12} {:>9} {:>8} {:>16} {:>11}",

@@ -241,7 +241,11 @@ fn what_grows_beyond_a_machine_is_refused_with_the_bytes_and_the_field_and_what_
         ),
         (vec!["trials=1000000"], "trials", "for the other trials"),
         (
-            vec!["radio.latency=Constant(9900)", "time_limit=10000", "detector=Timeout(9)"],
+            vec![
+                "radio.latency=Constant(9900)",
+                "time_limit=10000",
+                "detector=Timeout(9)",
+            ],
             "radio.latency",
             "under way",
         ),
