@@ -1,8 +1,8 @@
 """What the paper states, claim by claim, and by what rule and margin each is to be judged, from `analysis/reference/`.
 
 The list was committed before any run that it is held against, so that neither rule nor margin could follow from a result.
-A claim is judged under each reading of what the paper leaves open: where targets stand and how robots are deployed. One
-speed is fitted for each reading, on one of its claims.
+Each claim is to be judged under each reading of what the paper leaves open: where targets stand and how robots are
+deployed. One speed is to be fitted for each reading, on one of its claims. So far the list can be printed, no more.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from . import reference, verdict
+from . import reference
 
 RULES = ("number", "above", "below", "same", "equal")
 """As in `verdict.py`; `equal` means in every trial."""
@@ -72,7 +72,3 @@ def readings() -> Iterator[Reading]:
     """Every reading; the first is the one of the committed figures."""
     for row in reference.rows("readings"):
         yield Reading(row["key"], row["targets"], row["deployment"], row["speed"], row["why"])
-
-
-MARGINS = {"number": (verdict.MARGIN, 2 * verdict.MARGIN), "same": (verdict.SAME,)}
-"""What is granted where the paper has a number: twice as much where it says "about"."""

@@ -171,7 +171,7 @@ struct Settle<'a> {
 
 impl Settle<'_> {
     /// Settles them by the `probability` that a copy is lost, given the square of its way in metres, and by the `latency` that is drawn for it.
-    // A loop for each pair of models: with the models looked at within it, a copy takes a fifth longer.
+    // A loop for each pair of models: where they are looked at within it, a copy goes through memory, which took 5 % of a delivery.
     #[allow(clippy::inline_always)]
     #[inline(always)]
     fn all(&mut self, mut probability: impl FnMut(FrameCopy, f64) -> f64, latency: impl Fn(&mut LatencyBits) -> Span) {

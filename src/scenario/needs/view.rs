@@ -13,7 +13,7 @@ use crate::protocol::detector::DetectorConfig;
 use crate::quantity::{Finite, Probability};
 use crate::radio::{LossChain, LossConfig};
 
-/// Of a status sent lately, and of a lost copy of it, in lists that double.
+/// Of a status sent lately, and of a lost copy of it, in lists that have room to spare.
 const STATUS: f64 = 32.0;
 const LOST: f64 = 16.0;
 /// Vectors that an iteration to λ₂ keeps.
