@@ -76,6 +76,7 @@ mod problem;
 mod sections;
 mod shared;
 mod start;
+pub mod targets;
 
 use std::fmt::Debug;
 

@@ -197,8 +197,8 @@ fn works_for(reports: &Reports, robot: ActorId, target: u16) -> bool {
 mod tests {
     use super::*;
     use crate::faults::{Effect, Health};
-    use crate::metrics::MissionTarget;
     use crate::metrics::faults::Failures;
+    use crate::metrics::{MissionTarget, Ties};
     use crate::protocol::{Note, Role};
     use crate::radio::Reach;
 
@@ -236,7 +236,7 @@ mod tests {
                         links: 2,
                     }],
                     reach: 0.3,
-                    link_limit: 1.7,
+                    ties: Ties::Parents { within: 1.7 },
                     root: ActorId(0),
                     worker_role: WORKER,
                 },

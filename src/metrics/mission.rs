@@ -7,7 +7,7 @@ use crate::geometry::{Vec2, at_most};
 use crate::protocol::Role;
 use crate::radio::Reach;
 
-use super::connectivity::Chains;
+use super::connectivity::{Chains, Graph};
 use super::faults::Failures;
 use super::record::{TargetSample, TargetState};
 use super::reports::Reports;
@@ -19,12 +19,24 @@ pub struct Mission {
     pub targets: Vec<MissionTarget>,
     /// d_δ: a worker this near to its target holds it, metres.
     pub reach: f64,
-    /// d_c: a parent must be this near to its worker for the link to count, metres.
-    pub link_limit: f64,
+    /// What counts as a link.
+    pub ties: Ties,
     /// The robot that every chain leads to.
     pub root: ActorId,
     /// The role of the robots that visit targets.
     pub worker_role: Role,
+}
+
+/// What counts as a link between a worker and the root, in chains of live robots each within range of the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ties {
+    /// The parents that robots name, [one after the other](crate::protocol::Note::Parents).
+    Parents {
+        /// d_c: a parent must be this near to its worker, metres.
+        within: f64,
+    },
+    /// Whoever is there, for protocols that keep the swarm in one piece and no chains in it.
+    Neighbours,
 }
 
 /// A place to hold.
@@ -64,18 +76,35 @@ impl<'a> Scene<'a> {
         self.failures.is_live(a) && self.failures.is_live(b)
     }
 
-    fn chains(&self, root: ActorId) -> Chains {
+    fn chains(&self, root: ActorId, ties: Ties) -> Chains {
+        if ties == Ties::Neighbours {
+            return Chains::new(&self.neighbours(), root, |_, _| true);
+        }
         Chains::new(&self.reports.parents, root, |child, parent| {
             let [child, parent] = [child, parent].map(|robot| (robot, self.positions[robot.index()]));
             self.are_live(child.0, parent.0) && self.reach.linked(child, parent)
         })
+    }
+
+    /// Everyone whom each live robot hears and is heard by, in order of ids.
+    fn neighbours(&self) -> Vec<Vec<ActorId>> {
+        let robots = (0..).map(ActorId).zip(self.positions.iter().copied());
+        let live = robots.filter(|(robot, _)| self.failures.is_live(*robot));
+        let (graph, who) = Graph::with_robots(live, self.reach);
+        let mut neighbours = vec![Vec::new(); self.positions.len()];
+        for &[a, b] in graph.edges() {
+            let [a, b] = [a, b].map(|vertex| who[vertex as usize]);
+            neighbours[a.index()].push(b);
+            neighbours[b.index()].push(a);
+        }
+        neighbours
     }
 }
 
 impl Mission {
     /// nl(t) of each target, in order: the chains of its best connected worker, wherever that is; 0 without a worker.
     pub(super) fn links(&self, scene: Scene) -> Vec<u32> {
-        let chains = scene.chains(self.root);
+        let chains = scene.chains(self.root, self.ties);
         (0..self.targets.len())
             .map(|target| self.best_connected(target, &chains, scene))
             .collect()
@@ -83,7 +112,7 @@ impl Mission {
 
     /// How each target stands.
     pub(super) fn stands(&self, scene: Scene) -> Vec<TargetSample> {
-        let chains = scene.chains(self.root);
+        let chains = scene.chains(self.root, self.ties);
         let targets = self.targets.iter().enumerate();
         let stands = targets.map(|(target, MissionTarget { links, .. })| {
             let worker_m = Some(self.nearest_worker(target, scene)).filter(|metres| metres.is_finite());
@@ -101,7 +130,7 @@ impl Mission {
 
     /// nl(t) of target number `target`.
     pub(super) fn links_of(&self, target: usize, scene: Scene) -> u32 {
-        self.best_connected(target, &scene.chains(self.root), scene)
+        self.best_connected(target, &scene.chains(self.root, self.ties), scene)
     }
 
     fn best_connected(&self, target: usize, chains: &Chains, scene: Scene) -> u32 {
@@ -134,7 +163,7 @@ impl Mission {
     /// needed.
     pub(super) fn is_served(&self, target: usize, scene: Scene, chains: &OnceCell<Chains>) -> bool {
         let links = self.targets[target].links;
-        let chains = || chains.get_or_init(|| scene.chains(self.root));
+        let chains = || chains.get_or_init(|| scene.chains(self.root, self.ties));
         self.holders(target, scene).any(|robot| chains().count(robot) >= links)
     }
 
@@ -145,21 +174,22 @@ impl Mission {
             .reports
             .working_for(target, self.worker_role)
             .filter(move |robot| (scene.positions[robot.index()] - position).norm() <= at_most(self.reach))
-            .filter(move |&robot| self.near_parents(robot, scene) >= links as usize) // None if it has failed.
+            .filter(move |&robot| self.has_near(links as usize, robot, scene)) // Not one that has failed.
     }
 
-    /// Distinct live parents of `robot`, live itself, within d_c of it.
-    fn near_parents(&self, robot: ActorId, scene: Scene) -> usize {
+    /// Whether so many `links` can end at `robot`, as far as it can tell: distinct live parents, within d_c of it.
+    fn has_near(&self, links: usize, robot: ActorId, scene: Scene) -> bool {
+        let Ties::Parents { within } = self.ties else {
+            return scene.failures.is_live(robot);
+        };
         let named = &scene.reports.parents[robot.index()];
         let distinct = named
             .iter()
             .enumerate()
             .filter(|(i, parent)| !named[..*i].contains(parent));
-        distinct
-            .filter(|&(_, &parent)| {
-                scene.are_live(robot, parent) && scene.apart(robot, parent) <= at_most(self.link_limit)
-            })
-            .count()
+        let near = distinct
+            .filter(|&(_, &parent)| scene.are_live(robot, parent) && scene.apart(robot, parent) <= at_most(within));
+        near.count() >= links
     }
 }
 
@@ -240,7 +270,7 @@ pub(super) mod tests {
                 links,
             }],
             reach: 0.3,
-            link_limit: 1.7,
+            ties: Ties::Parents { within: 1.7 },
             root: ActorId(0),
             worker_role: WORKER,
         }
@@ -323,6 +353,26 @@ pub(super) mod tests {
         assert_eq!(links(4.0, -1.0), [0], "a wall parts the root from its relays");
         assert_eq!(links(4.0, -2.0), [0], "a wall parts the worker from its relays");
         assert_eq!(links(3.0, 0.0), [0], "nobody hears the worker");
+    }
+
+    #[test]
+    fn where_no_chains_are_kept_whoever_is_in_range_makes_a_link() {
+        let mission = |links| Mission {
+            ties: Ties::Neighbours,
+            ..mission(links)
+        };
+        let mut stage = Stage::new();
+        stage.reports.note(ActorId(3), &Note::Parents(Vec::new()));
+        stage.reports.note(ActorId(1), &Note::Parents(vec![ActorId(3)]));
+        assert!(stage.accomplishes(&mission(2)) && !stage.accomplishes(&mission(3)));
+        assert_eq!(mission(2).links(stage.scene()), [2]);
+        stage.silence(1);
+        assert!(stage.accomplishes(&mission(1)) && !stage.accomplishes(&mission(2)));
+        stage.silence(2);
+        assert!(!stage.accomplishes(&mission(1)), "the worker has lost the root");
+        let mut stage = Stage::new();
+        stage.silence(3);
+        assert!(!stage.accomplishes(&mission(1)), "the worker itself has failed");
     }
 
     #[test]

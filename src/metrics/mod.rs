@@ -34,7 +34,7 @@ pub use config::{AskedTable, MetricsConfig};
 pub use connectivity::{Chains, Graph};
 pub use episode::{FaultEpisode, FaultKind, HealingEpisode};
 pub use latency::LatencyHistogram;
-pub use mission::{Mission, MissionTarget};
+pub use mission::{Mission, MissionTarget, Ties};
 pub use noted::{Amount, Noted, Values};
 pub use noted_figure::NotedFigure;
 pub use pairs::{MEASURES as PAIR_MEASURES, PairMeasure, PairRecord};

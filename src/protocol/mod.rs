@@ -23,6 +23,8 @@ mod names;
 mod output;
 mod robot;
 pub mod robot_table;
+pub mod steering;
+mod targets;
 pub mod wander;
 
 pub use codec::{CodecError, Serialised};
@@ -32,6 +34,7 @@ pub use layout::{Content, Field, Form, Layout, Meaning, Part, Value};
 pub use names::{MessageSize, Role, TimerId, Topic};
 pub use output::{Directed, Evidence, Note, Output};
 pub use robot::Robot;
+pub use targets::{Assignment, TargetConfig, TargetsConfig};
 
 /// A protocol as one robot runs it: [the crate's page](crate#write-it) writes, tests and runs a whole one.
 ///

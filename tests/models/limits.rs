@@ -5,7 +5,7 @@ use desim::engine::{ActorId, SimTime, Span, Streams};
 use desim::experiment::run_trial;
 use desim::faults::RegionConfig;
 use desim::geometry::{Pose, Vec2, is_left_of};
-use desim::metrics::{Graph, Mission, MissionTarget, Outcome, TrialRecord};
+use desim::metrics::{Graph, Mission, MissionTarget, Outcome, Ties, TrialRecord};
 use desim::motion::{ArenaConfig, DeployConfig, MotionConfig, World, deploy};
 use desim::predict::Preflight;
 use desim::protocol::{CodecError, Input, Note, Output, Protocol, Role};
@@ -215,7 +215,7 @@ fn a_target_at_the_very_threshold_is_held_over_a_link_of_the_very_critical_dista
                     links: 1,
                 }],
                 reach: decimal(reach) * (1.0 - beyond),
-                link_limit: decimal(link),
+                ties: Ties::Parents { within: decimal(link) },
                 root: ActorId(0),
                 worker_role: Role(1),
             });

@@ -465,7 +465,7 @@ impl Protocol for Reporter {
 
 #[test]
 fn the_chain_of_a_mission_is_as_long_as_its_links_hold_both_ways() {
-    use desim::metrics::{Mission, MissionTarget};
+    use desim::metrics::{Mission, MissionTarget, Ties};
     let links = |places: [(f64, f64); 4], half: f64| {
         let mut setup = setup(1.0, half);
         setup.control.phase = PhaseConfig::Together;
@@ -475,7 +475,7 @@ fn the_chain_of_a_mission_is_as_long_as_its_links_hold_both_ways() {
                 links: 1,
             }],
             reach: 0.3,
-            link_limit: 1.7,
+            ties: Ties::Parents { within: 1.7 },
             root: ActorId(0),
             worker_role: Role(1),
         });

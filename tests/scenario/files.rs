@@ -4,8 +4,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use desim::cli::check::{Say, check};
-use desim::kinds::backbone::{BackboneConfig, TargetsConfig};
+use desim::kinds::backbone::BackboneConfig;
 use desim::protocol::CompletionConfig;
+use desim::protocol::TargetsConfig;
 use desim::radio::{LatencyConfig, LossConfig};
 use desim::scenario::{Override, Report, Scenario, Style, examine, json_schema, load, parse, question, to_ron};
 

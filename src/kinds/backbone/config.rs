@@ -4,9 +4,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::{Vec2, unit};
-use crate::protocol::CompletionConfig;
-use crate::quantity::{Finite, NonNegative, Positive, Probability};
+use crate::geometry::Vec2;
+use crate::protocol::{CompletionConfig, TargetsConfig};
+use crate::quantity::{NonNegative, Positive, Probability};
 
 use super::relays::relays_needed;
 
@@ -204,69 +204,11 @@ fn lj_delta() -> Positive {
     Positive::new(0.5)
 }
 
-/// The targets of a mission.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub enum TargetsConfig {
-    /// Equally spaced on a circle around the centre, the first on the positive x axis (paper section 5.1: four, 90° apart).
-    Ring {
-        /// How many.
-        count: u8,
-        /// Their distance from the centre, metres.
-        radius: Positive,
-        /// Links that each needs, at least 1.
-        #[schemars(range(min = 1))]
-        #[serde(default = "one_link")]
-        links: u8,
-    },
-    /// Each by its place.
-    At(Vec<TargetConfig>),
-}
-
-/// One target.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TargetConfig {
-    /// Place in metres from the centre.
-    pub at: (Finite, Finite),
-    /// Links that it needs, at least 1.
-    #[schemars(range(min = 1))]
-    #[serde(default = "one_link")]
-    pub links: u8,
-}
-
-fn one_link() -> u8 {
-    1
-}
-
 impl BackboneConfig {
     /// Where the targets are, metres from the centre, and how many links each needs.
     #[must_use]
     pub fn targets(&self) -> Vec<(Vec2, u8)> {
-        match &self.targets {
-            TargetsConfig::Ring { count, radius, links } => (0..*count)
-                .map(|index| {
-                    let angle = std::f64::consts::TAU * f64::from(index) / f64::from(*count);
-                    (unit(angle) * radius.get(), *links)
-                })
-                .collect(),
-            TargetsConfig::At(targets) => targets
-                .iter()
-                .map(|target| (Vec2::new(target.at.0.get(), target.at.1.get()), target.links))
-                .collect(),
-        }
-    }
-
-    /// Where target number `index` is said, from this section on, and what to do if it lies badly.
-    #[must_use]
-    pub fn target_field(&self, index: usize) -> (String, &'static str) {
-        match self.targets {
-            TargetsConfig::Ring { .. } => (
-                "targets".to_owned(),
-                "make the ring's radius less or the arena larger, or move what stands in the way",
-            ),
-            TargetsConfig::At(_) => (format!("targets[{index}].at"), "move it, or what stands in its way"),
-        }
+        self.targets.places()
     }
 
     /// The fewest robots that a mission takes: a root, a worker for each target, and for each of its links as many relays as the

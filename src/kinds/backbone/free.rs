@@ -1,8 +1,8 @@
 //! The free robot: waits in the cluster around the root, and makes way (paper algorithm 3, eq. 17 and 18).
 
 use crate::geometry::Vec2;
+use crate::protocol::steering::forces;
 
-use super::forces;
 use super::message::Role;
 use super::view::View;
 

@@ -14,8 +14,8 @@
 
 use crate::engine::ActorId;
 use crate::geometry::Vec2;
+use crate::protocol::steering::forces;
 
-use super::forces;
 use super::message::Role;
 use super::neighbours::Neighbour;
 use super::view::View;

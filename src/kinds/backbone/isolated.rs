@@ -6,8 +6,8 @@
 use std::f64::consts::TAU;
 
 use crate::geometry::{Vec2, unit};
+use crate::protocol::steering::forces;
 
-use super::forces;
 use super::view::View;
 
 /// How near to its waiting place a robot stops, in safe distances.

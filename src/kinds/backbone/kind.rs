@@ -2,7 +2,7 @@
 
 use super::{Backbone, BackboneConfig, Role, checks, layout, swarm};
 use crate::kind::{Expected, Goal, Holds, InPieces, Kind, Prediction, Problem, Sections, Shared, Swarm, Targets};
-use crate::metrics::{Mission, MissionTarget};
+use crate::metrics::{Mission, MissionTarget, Ties};
 use crate::protocol::{CompletionConfig, Layout};
 
 impl Kind for BackboneConfig {
@@ -33,7 +33,9 @@ impl Kind for BackboneConfig {
         Goal::Targets(Mission {
             targets: targets.collect(),
             reach: self.movement_threshold.get(),
-            link_limit: self.critical_distance.get(),
+            ties: Ties::Parents {
+                within: self.critical_distance.get(),
+            },
             root: first.root(),
             worker_role: Role::Worker.index(),
         })

@@ -2,13 +2,14 @@
 
 use crate::engine::{ActorId, Span, Streams};
 use crate::geometry::{Pose, Vec2, direction};
+use crate::protocol::Assignment;
 use crate::protocol::control::{ControlConfig, Phases, Rhythm};
 use crate::protocol::detector::{Circumstances, DetectorConfig};
 use crate::protocol::gossip::{GossipConfig, Repetition, RetransmitConfig, TimeToLiveConfig, Turns};
+use crate::protocol::steering::Patience;
 
 use super::config::BackboneConfig;
 use super::relays::relays_needed;
-use super::sidestep::Patience;
 
 /// The mission: the same for all robots, and known to all from the start (paper section 4.1).
 #[derive(Debug)]
@@ -152,32 +153,23 @@ impl Mission {
     /// nearest to its target that has no such duty yet.
     #[must_use]
     pub fn new(config: &BackboneConfig, parameters: Parameters, poses: &[Pose]) -> Self {
-        let mut assigned = vec![false; poses.len()];
-        let mut assign_nearest = |place: Vec2| {
-            let nearest = (0..poses.len()).filter(|&robot| !assigned[robot]).min_by(|&a, &b| {
-                let distance = |robot: usize| (poses[robot].position - place).norm_squared();
-                distance(a).total_cmp(&distance(b))
-            });
-            let robot = nearest.expect("a checked scenario has a robot for the root and for each target");
-            assigned[robot] = true;
-            robot
-        };
-        let root = assign_nearest(Vec2::zeros());
-        let origin = poses[root].position;
+        let places = config.targets();
+        let duties = Assignment::nearest(poses, places.iter().map(|(at, _)| *at));
+        let origin = poses[duties.root.index()].position;
         let mut chains = Vec::new();
         let mut targets = Vec::new();
-        for (index, (at, links)) in config.targets().into_iter().enumerate() {
+        for (index, ((at, links), worker)) in places.into_iter().zip(duties.workers).enumerate() {
             let first = chains.len() as u8 + 1;
             chains.extend(parallel_chains(config, index as u8, at - origin, links));
             targets.push(Target {
                 at,
-                worker: ActorId(assign_nearest(at) as u32),
+                worker,
                 chains: first..first + links,
             });
         }
         Self {
             robots: poses.len(),
-            root: ActorId(root as u32),
+            root: duties.root,
             origin,
             targets,
             chains,

@@ -6,7 +6,6 @@ mod checks;
 mod codec;
 mod config;
 mod duty;
-mod forces;
 mod free;
 mod heal;
 mod isolated;
@@ -23,7 +22,6 @@ mod requests;
 mod root;
 mod said;
 mod shortage;
-mod sidestep;
 mod strand;
 mod view;
 mod worker;
@@ -34,9 +32,7 @@ mod tests;
 use std::rc::Rc;
 
 pub use codec::BackboneCodec;
-pub use config::{
-    BackboneConfig, ControlLawConfig, HealingConfig, RecruitingConfig, ShortageConfig, TargetConfig, TargetsConfig,
-};
+pub use config::{BackboneConfig, ControlLawConfig, HealingConfig, RecruitingConfig, ShortageConfig};
 pub use message::{Message, Order, Request, Role, Status, Strand, TargetSet};
 
 use duty::Duty;
@@ -45,7 +41,6 @@ use neighbours::Neighbours;
 use recruit::Recruiter;
 use root::Root;
 use said::Said;
-use sidestep::Sidestep;
 use view::{Knowledge, View};
 use worker::Worker;
 
@@ -54,6 +49,7 @@ use crate::geometry::{Pose, Vec2};
 use crate::protocol::control::ControlConfig;
 use crate::protocol::detector::{self, Circumstances, Detector, DetectorConfig};
 use crate::protocol::gossip::GossipConfig;
+use crate::protocol::steering::{Sidestep, forces};
 use crate::protocol::{Input, Note, Output, Protocol, Reception, Topic, Wake};
 
 /// One robot of the backbone.

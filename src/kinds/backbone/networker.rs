@@ -2,8 +2,8 @@
 
 use crate::engine::ActorId;
 use crate::geometry::Vec2;
+use crate::protocol::steering::forces;
 
-use super::forces;
 use super::heal;
 use super::message::{Message, Request, Strand};
 use super::mission::Chain;

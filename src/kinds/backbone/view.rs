@@ -4,8 +4,8 @@ use std::rc::Rc;
 
 use crate::engine::ActorId;
 use crate::geometry::Vec2;
+use crate::protocol::steering::forces;
 
-use super::forces;
 use super::message::{Order, Role};
 use super::mission::{Mission, Parameters};
 use super::neighbours::{Neighbour, Neighbours};

@@ -3,8 +3,8 @@
 
 use crate::engine::ActorId;
 use crate::geometry::Vec2;
+use crate::protocol::steering::forces;
 
-use super::forces;
 use super::free;
 use super::heal;
 use super::message::{Message, Strand};

@@ -1,10 +1,10 @@
 use super::*;
 use crate::faults::{Effect, Health};
 use crate::geometry::Pose;
-use crate::metrics::Mission;
 use crate::metrics::figures::Registry;
 use crate::metrics::traffic::HeaderBytes;
 use crate::metrics::volume::TopicFates;
+use crate::metrics::{Mission, Ties};
 use crate::protocol::{CompletionConfig, Role};
 use crate::spool::Scratch;
 
@@ -228,7 +228,7 @@ fn a_mission_never_held_is_censored() {
             links: 1,
         }],
         reach: 0.3,
-        link_limit: 1.7,
+        ties: Ties::Parents { within: 1.7 },
         root: ActorId(0),
         worker_role: Role(1),
     };

@@ -8,7 +8,7 @@ use crate::geometry::{Pose, Vec2};
 use crate::metrics::detection::{Cause, DetectionRecord, Missed, Suspicion};
 use crate::metrics::episode::{FaultEpisode, FaultKind};
 use crate::metrics::volume::TopicFates;
-use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Outcome, Recorder, RumorSpread, RunEnd};
+use crate::metrics::{HeaderBytes, Layout, MetricsConfig, Mission, Outcome, Recorder, RumorSpread, RunEnd, Ties};
 use crate::protocol::{MessageSize, Note, Role, Topic};
 use crate::radio::{LossCause, Reach};
 
@@ -32,7 +32,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
         mission: Some(Mission {
             targets: vec![],
             reach: 0.3,
-            link_limit: 1.7,
+            ties: Ties::Parents { within: 1.7 },
             root: ActorId(0),
             worker_role: Role(1),
         }),

@@ -13,7 +13,9 @@ const DURATION: f64 = 0.33;
 /// When a robot is stuck: after so many control steps in which it came less than `progress` metres farther.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
+    /// Control steps without progress after which a robot steps aside.
     pub stall_steps: u64,
+    /// Metres that count as progress.
     pub progress: f64,
 }
 

@@ -1,7 +1,7 @@
 //! The virtual forces that robots move by, as velocities (paper section 4). All are pure functions of relative
 //! positions: vectors from this robot to the other, metres, in the arena's axes; results in m/s.
 
-use crate::geometry::{Vec2, direction};
+use crate::geometry::{Vec2, clamp_length, direction};
 
 /// u_ij = k (d_ij − d_s) towards the other robot (paper eq. 9): it pulls beyond `rest` and pushes below, there by
 /// `push_limit` at most (ours, for a chain that is pushed hard buckles).
@@ -70,6 +70,13 @@ pub fn obstacle(desired: Vec2, bodies: &[Vec2], range: f64, gain: f64) -> Vec2 {
 #[must_use]
 pub fn lane_pull(offset: f64, left: Vec2, gain: f64, limit: f64) -> Vec2 {
     left * (gain * offset).clamp(-limit, limit)
+}
+
+/// `first` as fast as it may be, and of `then` what is left of `limit`, m/s, so that what must be is never given up for what is wanted.
+#[must_use]
+pub fn in_order(first: Vec2, then: Vec2, limit: f64) -> Vec2 {
+    let first = clamp_length(first, limit);
+    first + clamp_length(then, limit - first.norm())
 }
 
 /// Shortens `velocity` by `rest_speed`, to zero if it is no faster: small commands fade out, and robots stand still.
@@ -154,6 +161,19 @@ mod tests {
         let west = Vec2::new(-1.0, 0.0);
         assert!(close(lane_pull(0.02, west, 0.5, 0.05), Vec2::new(-0.01, 0.0)));
         assert!(close(lane_pull(-2.0, west, 0.5, 0.05), Vec2::new(0.05, 0.0)));
+    }
+
+    #[test]
+    fn what_must_be_comes_first_and_both_together_stay_within_the_limit() {
+        let x = |x| Vec2::new(x, 0.0);
+        let y = |y| Vec2::new(0.0, y);
+        assert!(close(in_order(x(0.5), y(9.0), 2.0), Vec2::new(0.5, 1.5)));
+        assert!(close(in_order(x(5.0), y(9.0), 2.0), x(2.0)));
+        assert!(close(in_order(Vec2::zeros(), y(1.0), 2.0), y(1.0)));
+        assert!(
+            close(in_order(x(2.0), x(-9.0), 2.0), x(2.0)),
+            "nothing is left to turn back with"
+        );
     }
 
     #[test]
