@@ -3,18 +3,19 @@
 //!
 //! This registry is the one place that names them. Which settings of `gossip` each heeds:
 //!
-//! | setting | Backbone | Heartbeat | Rumor |
-//! |---|---|---|---|
-//! | `status` | all of it | interval and jitter | |
-//! | `strand` | all of it | | |
-//! | `request` | all of it | | |
-//! | `relay` | interval, jitter, retransmit, of the root's orders | | all of it, of the rumours |
-//! | `piggyback` | yes | where its detector sends messages too | yes |
+//! | setting | Backbone | Heartbeat | LocalTree | Rumor |
+//! |---|---|---|---|---|
+//! | `status` | all of it | interval and jitter | interval and jitter | |
+//! | `strand` | all of it | | | |
+//! | `request` | all of it | | | |
+//! | `relay` | interval, jitter, retransmit, of the root's orders | | | all of it, of the rumours |
+//! | `piggyback` | yes | where its detector sends messages too | | yes |
 //!
 //! A setting that a protocol does not heed must be left at its default: a scenario that changes it is refused.
 
 pub mod backbone;
 pub mod heartbeat;
+pub mod local_tree;
 pub mod rumor;
 pub mod traffic;
 
@@ -30,10 +31,11 @@ struct Registry {
 
 static REGISTRY: LazyLock<RwLock<Registry>> = LazyLock::new(|| RwLock::new(Registry::of(shipped().to_vec())));
 
-fn shipped() -> [Entry; 4] {
+fn shipped() -> [Entry; 5] {
     [
         Entry::of::<backbone::BackboneConfig>(),
         Entry::of::<heartbeat::HeartbeatConfig>(),
+        Entry::of::<local_tree::LocalTreeConfig>(),
         Entry::of::<rumor::RumorConfig>(),
         Entry::of::<traffic::TrafficConfig>(),
     ]
