@@ -238,6 +238,7 @@ mod tests {
                     reach: 0.3,
                     ties: Ties::Parents { within: 1.7 },
                     root: ActorId(0),
+                    root_role: None,
                     worker_role: WORKER,
                 },
                 healing: Healing::new(2),

@@ -23,6 +23,8 @@ pub struct Mission {
     pub ties: Ties,
     /// The robot that every chain leads to.
     pub root: ActorId,
+    /// The role of whoever is in its stead, where another robot can be: a live one that reports it, and is not the first root, comes before that.
+    pub root_role: Option<Role>,
     /// The role of the robots that visit targets.
     pub worker_role: Role,
 }
@@ -102,9 +104,18 @@ impl<'a> Scene<'a> {
 }
 
 impl Mission {
+    /// Where chains lead to.
+    fn chains(&self, scene: Scene) -> Chains {
+        let elected = self.root_role.and_then(|role| {
+            let mut others = scene.reports.in_role(role).filter(|robot| *robot != self.root);
+            others.find(|robot| scene.failures.is_live(*robot))
+        });
+        scene.chains(elected.unwrap_or(self.root), self.ties)
+    }
+
     /// nl(t) of each target, in order: the chains of its best connected worker, wherever that is; 0 without a worker.
     pub(super) fn links(&self, scene: Scene) -> Vec<u32> {
-        let chains = scene.chains(self.root, self.ties);
+        let chains = self.chains(scene);
         (0..self.targets.len())
             .map(|target| self.best_connected(target, &chains, scene))
             .collect()
@@ -112,7 +123,7 @@ impl Mission {
 
     /// How each target stands.
     pub(super) fn stands(&self, scene: Scene) -> Vec<TargetSample> {
-        let chains = scene.chains(self.root, self.ties);
+        let chains = self.chains(scene);
         let targets = self.targets.iter().enumerate();
         let stands = targets.map(|(target, MissionTarget { links, .. })| {
             let worker_m = Some(self.nearest_worker(target, scene)).filter(|metres| metres.is_finite());
@@ -130,7 +141,7 @@ impl Mission {
 
     /// nl(t) of target number `target`.
     pub(super) fn links_of(&self, target: usize, scene: Scene) -> u32 {
-        self.best_connected(target, &scene.chains(self.root, self.ties), scene)
+        self.best_connected(target, &self.chains(scene), scene)
     }
 
     fn best_connected(&self, target: usize, chains: &Chains, scene: Scene) -> u32 {
@@ -163,7 +174,7 @@ impl Mission {
     /// needed.
     pub(super) fn is_served(&self, target: usize, scene: Scene, chains: &OnceCell<Chains>) -> bool {
         let links = self.targets[target].links;
-        let chains = || chains.get_or_init(|| scene.chains(self.root, self.ties));
+        let chains = || chains.get_or_init(|| self.chains(scene));
         self.holders(target, scene).any(|robot| chains().count(robot) >= links)
     }
 
@@ -272,6 +283,7 @@ pub(super) mod tests {
             reach: 0.3,
             ties: Ties::Parents { within: 1.7 },
             root: ActorId(0),
+            root_role: None,
             worker_role: WORKER,
         }
     }
@@ -373,6 +385,23 @@ pub(super) mod tests {
         let mut stage = Stage::new();
         stage.silence(3);
         assert!(!stage.accomplishes(&mission(1)), "the worker itself has failed");
+    }
+
+    #[test]
+    fn chains_lead_to_whoever_was_elected_root_while_that_one_lives() {
+        const ROOT: Role = Role(2);
+        let mission = Mission {
+            root_role: Some(ROOT),
+            ..mission(1)
+        };
+        let mut stage = Stage::new();
+        assert!(stage.accomplishes(&mission), "nobody else is");
+        stage.silence(0);
+        assert!(!stage.accomplishes(&mission));
+        stage.reports.note(ActorId(2), &Note::Role(ROOT));
+        assert!(stage.accomplishes(&mission), "the worker relies on the new root itself");
+        stage.silence(2);
+        assert!(!stage.accomplishes(&mission));
     }
 
     #[test]

@@ -51,6 +51,14 @@ impl Reports {
         }
     }
 
+    /// The robots in role `role`, by id.
+    pub(super) fn in_role(&self, role: Role) -> impl Iterator<Item = ActorId> {
+        let roles = self.roles.iter().zip(0..);
+        roles
+            .filter(move |(its_role, _)| **its_role == role)
+            .map(|(_, id)| ActorId(id))
+    }
+
     /// The robots in role `role` that work for `target`, by id.
     pub(super) fn working_for(&self, target: usize, role: Role) -> impl Iterator<Item = ActorId> {
         let wanted = u16::try_from(target).ok();

@@ -217,6 +217,7 @@ fn a_target_at_the_very_threshold_is_held_over_a_link_of_the_very_critical_dista
                 reach: decimal(reach) * (1.0 - beyond),
                 ties: Ties::Parents { within: decimal(link) },
                 root: ActorId(0),
+                root_role: None,
                 worker_role: Role(1),
             });
             let pose = |x| Pose {

@@ -477,6 +477,7 @@ fn the_chain_of_a_mission_is_as_long_as_its_links_hold_both_ways() {
             reach: 0.3,
             ties: Ties::Parents { within: 1.7 },
             root: ActorId(0),
+            root_role: None,
             worker_role: Role(1),
         });
         let places = places.map(|(x, y)| Vec2::new(x, y));

@@ -30,7 +30,9 @@ impl Backbone {
                 networker.watch_child(&view);
                 if networker.is_heir(&view) {
                     self.replace_duty(|duty, known| match duty {
-                        Duty::Networker(networker) => Duty::Worker(Worker::heir(networker.slot, &known.mission)),
+                        Duty::Networker(networker) => {
+                            Duty::Worker(Worker::heir(networker.slot, &known.mission, known.root))
+                        }
                         other => other,
                     });
                 } else if networker.is_done(&view) {
@@ -40,7 +42,7 @@ impl Backbone {
             Duty::Worker(worker) => {
                 if let Some(better) = worker.better(&view) {
                     self.replace_duty(|duty, known| match duty {
-                        Duty::Worker(worker) => worker.into_slot(known.mission.root).map_or(Duty::Free, |slot| {
+                        Duty::Worker(worker) => worker.into_slot(known.root).map_or(Duty::Free, |slot| {
                             Duty::Networker(Networker::waiting(slot, better, 0, Vec::new(), known.step))
                         }),
                         other => other,
@@ -51,7 +53,7 @@ impl Backbone {
         }
     }
 
-    fn replace_duty(&mut self, change: impl FnOnce(Duty, &Knowledge) -> Duty) {
+    pub(super) fn replace_duty(&mut self, change: impl FnOnce(Duty, &Knowledge) -> Duty) {
         self.previous = self.duty.role();
         let old = std::mem::replace(&mut self.duty, Duty::Free);
         self.duty = change(old, &self.known);

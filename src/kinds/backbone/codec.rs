@@ -10,6 +10,7 @@
 //! | release | kind, to |
 //! | order | kind, epoch, number of bytes, a bit for each target, set if it is dismantled |
 //! | order with a reserve | kind, relays in reserve, and on as an order |
+//! | bid | kind, robot, term, distance in two bytes, big-endian |
 //! | strand | kind, chain, next, number of robots, robots |
 //! | probe | as the detector has it |
 //!
@@ -23,7 +24,7 @@ use crate::engine::ActorId;
 use crate::protocol::CodecError;
 use crate::protocol::detector::{Monitored as _, Probe};
 
-use super::message::{Message, Order, Request, Role, Status, Strand, TargetSet};
+use super::message::{Bid, Message, Order, Request, Role, Status, Strand, TargetSet};
 
 pub(super) const JOIN: u8 = 0x10;
 pub(super) const ACCEPT: u8 = 0x11;
@@ -34,6 +35,7 @@ pub(super) const ADOPT: u8 = 0x15;
 pub(super) const WORK: u8 = 0x16;
 pub(super) const REPLACE: u8 = 0x17;
 pub(super) const ORDER_WITH_RESERVE: u8 = 0x18;
+pub(super) const BID: u8 = 0x19;
 pub(super) const PARENT_STRAND: u8 = 0x20;
 pub(super) const CHILD_STRAND: u8 = 0x21;
 pub(super) const WIDE_IDS: u8 = 0x80;
@@ -102,6 +104,11 @@ fn put_request(request: Request, bytes: &mut BytesMut) {
             bytes.put_u8(sequence);
         }
         Request::Release { to } => put_addressed(RELEASE, to, bytes),
+        Request::Bid(Bid { term, distance, robot }) => {
+            put_addressed(BID, robot, bytes);
+            bytes.put_u8(term);
+            bytes.put_u16(distance);
+        }
         Request::Order(order) => {
             let dismantled = order.dismantled.bytes();
             match order.reserve {
@@ -197,6 +204,11 @@ impl Decoder for BackboneCodec {
                 reserve: if kind == ORDER { 0 } else { reader.byte()? },
                 epoch: reader.byte()?,
                 dismantled: reader.targets()?,
+            })),
+            BID => Message::Request(Request::Bid(Bid {
+                robot: reader.id(wide)?,
+                term: reader.byte()?,
+                distance: u16::from_be_bytes([reader.byte()?, reader.byte()?]),
             })),
             PARENT_STRAND => Message::ParentStrand(reader.strand(wide)?),
             CHILD_STRAND => Message::ChildStrand(reader.strand(wide)?),

@@ -55,6 +55,30 @@ pub struct BackboneConfig {
     /// Settings of the root that the paper leaves open.
     #[serde(default)]
     pub shortage: ShortageConfig,
+    /// How robots elect a new root when it is lost, which faults may then take. By default they do not, and no fault may: the paper, whose future
+    /// work this is, takes the root as given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "ElectionConfig")]
+    pub election: Option<ElectionConfig>,
+}
+
+/// Electing a new root: the robot nearest to the place of the old one, free ones first, by bids that are passed on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct ElectionConfig {
+    /// Seconds for which a robot near to the root's place suspects the root, and hears others, before it calls an election.
+    pub patience: NonNegative,
+    /// Seconds for which bids are passed on, at each turn of `gossip.request`: longer than the best takes to reach all.
+    pub duration: Positive,
+}
+
+impl Default for ElectionConfig {
+    fn default() -> Self {
+        Self {
+            patience: NonNegative::new(1.0),
+            duration: Positive::new(5.0),
+        }
+    }
 }
 
 /// Settings of the control laws (paper eq. 8 to 16) that the paper leaves open.

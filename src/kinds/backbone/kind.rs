@@ -1,9 +1,13 @@
 //! The backbone as scenarios name it.
 
+use super::reign::Reign;
 use super::{Backbone, BackboneConfig, Role, checks, layout, swarm};
-use crate::kind::{Expected, Goal, Holds, InPieces, Kind, Prediction, Problem, Sections, Shared, Swarm, Targets};
-use crate::metrics::{Mission, MissionTarget, Ties};
+use crate::kind::{
+    Expected, Goal, Holds, InPieces, Kind, Prediction, Problem, Sections, Shared, Start, Swarm, Targets,
+};
+use crate::metrics::{Mission, MissionTarget, NotedFigure, Ties, TrialRecord};
 use crate::protocol::{CompletionConfig, Layout};
+use crate::simulation::RunError;
 
 impl Kind for BackboneConfig {
     const NAME: &'static str = "Backbone";
@@ -17,6 +21,23 @@ impl Kind for BackboneConfig {
             ..
         } = robots.sections;
         swarm(self, gossip, detector, control, robots.poses, robots.streams)
+    }
+
+    fn run(&self, swarm: &Swarm<'_>, start: Start<'_>) -> Result<TrialRecord, RunError> {
+        let robots = self.robots(swarm);
+        let goal = self.goal(&robots);
+        let root = robots.first().filter(|_| self.election.is_some()).map(Backbone::root);
+        let Some(root) = root else {
+            return start.run(robots, goal);
+        };
+        let finished = start.observe(robots, goal, Reign::new(swarm.poses.len(), root))?;
+        let mut record = finished.record;
+        finished.observer.note(&mut record);
+        Ok(record)
+    }
+
+    fn figures(&self) -> Vec<NotedFigure> {
+        self.election.as_ref().map_or_else(Vec::new, |_| Reign::figures())
     }
 
     fn layout() -> Layout {
@@ -37,6 +58,7 @@ impl Kind for BackboneConfig {
                 within: self.critical_distance.get(),
             },
             root: first.root(),
+            root_role: self.election.as_ref().map(|_| Role::Root.index()),
             worker_role: Role::Worker.index(),
         })
     }
@@ -96,7 +118,7 @@ impl Kind for BackboneConfig {
     }
 
     fn reserved(&self) -> Option<(u32, &'static str)> {
-        Some((0, "root"))
+        self.election.is_none().then_some((0, "root"))
     }
 
     fn in_pieces(&self, _: &Sections<'_>) -> Option<InPieces> {

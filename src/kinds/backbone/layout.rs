@@ -1,8 +1,8 @@
 //! How messages lie in their bytes, for those who look at frames: what the [codec](super::codec) does, described.
 
 use super::codec::{
-    ACCEPT, ADOPT, CHILD_STRAND, JOIN, ORDER, ORDER_WITH_RESERVE, PARENT_STRAND, REFUSE, RELEASE, REPLACE, WIDE_IDS,
-    WORK,
+    ACCEPT, ADOPT, BID, CHILD_STRAND, JOIN, ORDER, ORDER_WITH_RESERVE, PARENT_STRAND, REFUSE, RELEASE, REPLACE,
+    WIDE_IDS, WORK,
 };
 use crate::protocol::detector::Probe;
 use crate::protocol::{Layout, Part};
@@ -20,6 +20,7 @@ const MESSAGES: &[(u64, &str)] = &[
     (WORK as u64, "work"),
     (REPLACE as u64, "replace"),
     (ORDER_WITH_RESERVE as u64, "order with a reserve"),
+    (BID as u64, "bid"),
     (PARENT_STRAND as u64, "parent strand"),
     (CHILD_STRAND as u64, "child strand"),
     ((JOIN | WIDE_IDS) as u64, "join"),
@@ -29,6 +30,7 @@ const MESSAGES: &[(u64, &str)] = &[
     ((ADOPT | WIDE_IDS) as u64, "adopt"),
     ((WORK | WIDE_IDS) as u64, "work"),
     ((REPLACE | WIDE_IDS) as u64, "replace"),
+    ((BID | WIDE_IDS) as u64, "bid"),
     ((PARENT_STRAND | WIDE_IDS) as u64, "parent strand"),
     ((CHILD_STRAND | WIDE_IDS) as u64, "child strand"),
 ];
@@ -70,6 +72,14 @@ pub fn layout() -> Layout {
             (ACCEPT, vec![to(), sequence()]),
             (REFUSE, vec![to(), sequence()]),
             (RELEASE, vec![to()]),
+            (
+                BID,
+                vec![
+                    Part::robot("robot", bytes),
+                    Part::number("term", 1),
+                    Part::number("distance", 2),
+                ],
+            ),
             (PARENT_STRAND, strand()),
             (CHILD_STRAND, strand()),
         ];

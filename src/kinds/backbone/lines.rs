@@ -36,6 +36,19 @@ impl Lines {
         }
     }
 
+    /// The same at control step `step`, in the place of a root that was lost: they get time to be heard.
+    #[must_use]
+    pub fn from_now_on(mission: &Mission, step: u64) -> Self {
+        let line = Line {
+            heard: step,
+            ..Line::default()
+        };
+        Self {
+            lines: vec![line; mission.chains.len()],
+            any_lost: true,
+        }
+    }
+
     /// Takes in the strand of a chain that ends at the root, which hears `neighbours`.
     pub fn hear(&mut self, strand: &Strand, neighbours: &Neighbours, step: u64) {
         if let Some(line) = self.lines.get_mut(usize::from(strand.chain).wrapping_sub(1)) {

@@ -141,6 +141,33 @@ pub enum Request {
     },
     /// The root's order of what to expand, passed on from robot to robot.
     Order(Order),
+    /// The best bid known of an election, passed on from robot to robot.
+    Bid(Bid),
+}
+
+/// A bid to become the root.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bid {
+    /// Number of the election; 0 is the state at the start, before any.
+    pub term: u8,
+    /// How far the bidder is from the root's place, millimetres, and more if it has a duty; 0 of who is the root.
+    pub distance: u16,
+    /// Who bids.
+    pub robot: ActorId,
+}
+
+impl Bid {
+    /// Whether it is of a newer election than `other`. Numbers wrap: the one less than half a turn ahead is the newer.
+    #[must_use]
+    pub const fn is_of_newer_term_than(self, other: Self) -> bool {
+        self.term.wrapping_sub(other.term).cast_signed() > 0
+    }
+
+    /// Whether it beats `other` of the same election: it is less, or of a robot with a lower number.
+    #[must_use]
+    pub fn is_better_than(self, other: Self) -> bool {
+        (self.distance, self.robot) < (other.distance, other.robot)
+    }
 }
 
 /// Which targets are expanded and which dismantled (paper algorithm 3).

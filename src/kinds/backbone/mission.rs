@@ -9,6 +9,7 @@ use crate::protocol::gossip::{GossipConfig, Repetition, RetransmitConfig, TimeTo
 use crate::protocol::steering::Patience;
 
 use super::config::BackboneConfig;
+use super::election::Rules;
 use super::relays::relays_needed;
 
 /// The mission: the same for all robots, and known to all from the start (paper section 4.1).
@@ -143,6 +144,7 @@ pub struct Parameters {
     pub precedence: u64,
     pub reserve: u8,
     pub silence_steps: u64,
+    pub election: Option<Rules>,
     pub detector: DetectorConfig,
     pub circumstances: Circumstances,
     pub phases: Phases,
@@ -285,6 +287,10 @@ impl Parameters {
             hop_limit: gossip.strand.hop_limit.into(),
             precedence: PRECEDENCE * status_repetition.longest_pause(),
             healing_patience: steps(config.healing.patience.get()),
+            election: config.election.as_ref().map(|election| Rules {
+                patience: steps(election.patience.get()),
+                duration: steps(election.duration.get()),
+            }),
             silence_steps: steps(detector.usual_silence(circumstances).as_secs()),
             reserve: config.healing.reserve,
             detector: detector.clone(),

@@ -6,6 +6,7 @@ mod checks;
 mod codec;
 mod config;
 mod duty;
+mod election;
 mod free;
 mod heal;
 mod isolated;
@@ -17,6 +18,7 @@ mod mission;
 mod neighbours;
 mod networker;
 mod recruit;
+mod reign;
 mod relays;
 mod requests;
 mod root;
@@ -32,10 +34,11 @@ mod tests;
 use std::rc::Rc;
 
 pub use codec::BackboneCodec;
-pub use config::{BackboneConfig, ControlLawConfig, HealingConfig, RecruitingConfig, ShortageConfig};
-pub use message::{Message, Order, Request, Role, Status, Strand, TargetSet};
+pub use config::{BackboneConfig, ControlLawConfig, ElectionConfig, HealingConfig, RecruitingConfig, ShortageConfig};
+pub use message::{Bid, Message, Order, Request, Role, Status, Strand, TargetSet};
 
 use duty::Duty;
+use election::Election;
 use mission::{Mission, Parameters};
 use neighbours::Neighbours;
 use recruit::Recruiter;
@@ -64,6 +67,7 @@ pub struct Backbone {
     /// What arrived since the last control step and was read when the detector's timer woke the robot.
     unread: Vec<Reception<Rc<Message>>>,
     said: Said,
+    election: Election,
     told: Told,
 }
 
@@ -105,7 +109,7 @@ impl Backbone {
         let duty = if id == mission.root {
             Duty::Root(Root::new(&mission))
         } else if let Some(target) = mission.worker_target(id) {
-            Duty::Worker(Worker::new(target, &mission))
+            Duty::Worker(Worker::new(target, &mission, mission.root))
         } else {
             Duty::Free
         };
@@ -113,12 +117,14 @@ impl Backbone {
         let detector = Detector::new(&parameters.detector, parameters.circumstances, parameters.phases, id);
         Self {
             said: Said::nothing(id, parameters),
+            election: Election::won_by(mission.root),
             known: Knowledge {
                 id,
                 step: 0,
                 position: Vec2::zeros(),
                 neighbours: Neighbours::default(),
                 detector,
+                root: mission.root,
                 mission,
                 order: Order::default(),
             },
@@ -131,7 +137,7 @@ impl Backbone {
         }
     }
 
-    /// The robot that every chain ends at.
+    /// The robot that every chain ends at when a trial starts.
     #[must_use]
     pub fn root(&self) -> ActorId {
         self.known.mission.root
@@ -145,6 +151,9 @@ impl Backbone {
                 self.known
                     .neighbours
                     .hear(frame.sender, frame.sequence, reception.at, position, *status);
+                if status.role == Role::Root && frame.sender != self.known.root {
+                    self.election.contradict();
+                }
             }
             Message::ParentStrand(strand) => self.hear_parent_strand(frame.sender, strand, out),
             Message::ChildStrand(strand) if self.is_too_long(strand) => {}
@@ -202,6 +211,7 @@ impl Backbone {
             neighbours, detector, ..
         } = &mut self.known;
         neighbours.forget(|robot| detector.suspected_before(now, robot));
+        self.elect(now, &mut output.broadcasts);
         self.change_duty(&input.proximity);
         let desired = self.act(&input.proximity, &mut output.broadcasts);
         let parameters = &self.known.mission.parameters;
@@ -230,8 +240,9 @@ impl Backbone {
             Duty::Free | Duty::Networker(_) | Duty::Worker(_) if view.is_isolated() => isolated::velocity(&view),
             Duty::Free => free::velocity(&view),
             Duty::Root(root) => {
+                let velocity = Root::velocity(&view);
                 self.known.order = root.control(&view, &mut self.recruiter, out);
-                Vec2::zeros()
+                velocity
             }
             Duty::Networker(networker) => networker.control(&view, &mut self.recruiter, out),
             Duty::Worker(worker) => worker.control(&view, &mut self.recruiter, out),
@@ -297,10 +308,14 @@ impl Backbone {
         }
     }
 
-    /// Whether `message` is an order that it has had, or a newer one. Of other messages none is told apart: status and
+    /// Whether `message` is an order or a bid that it has had, or a newer one. Of other messages none is told apart: status and
     /// strands are signs of life, that they say nothing new is what they say.
     fn knows(&self, message: &Message) -> bool {
-        matches!(message, Message::Request(Request::Order(order)) if !order.is_newer_than(self.known.order))
+        match message {
+            Message::Request(Request::Order(order)) => !order.is_newer_than(self.known.order),
+            Message::Request(Request::Bid(bid)) => self.election.knows(*bid),
+            _ => false,
+        }
     }
 
     /// Tells the metrics what has changed.

@@ -155,7 +155,17 @@ impl Slot {
     /// Whether the slot's parent is the root.
     #[must_use]
     pub fn is_at_root(&self, view: &View<'_>) -> bool {
-        self.parent == view.mission.root
+        self.parent == view.root
+    }
+
+    /// Has `root` in the place of the `old` one.
+    pub fn follow(&mut self, old: ActorId, root: ActorId) {
+        if self.parent == old {
+            self.parent = root;
+        }
+        if let Some(first) = self.strand.first_mut().filter(|first| **first == old) {
+            *first = root;
+        }
     }
 
     /// Relays from the root to the parent, the parent included.
@@ -196,7 +206,7 @@ impl Slot {
     /// A parent that is silent, or says that it serves this chain no more, is replaced by the root, from which it was
     /// recruited; where that is out of reach, the chain is broken.
     fn give_up_a_lost_parent(&mut self, view: &View<'_>) {
-        let root = view.mission.root;
+        let root = view.root;
         if self.parent == root {
             return;
         }
@@ -221,7 +231,7 @@ impl Slot {
         broken.look_around(view);
         let offer = broken.offer.and_then(|robot| view.neighbours.get(robot));
         if let Some(parent) = offer.filter(|known| heal::can_serve(view, known, self.chain, descendants)) {
-            let root = view.mission.root;
+            let root = view.root;
             *self = Self::new(self.chain, root);
             self.link_to(parent.id, root);
         }
@@ -259,7 +269,7 @@ impl Slot {
     fn settle_invitation(&mut self, view: &View<'_>, wanted: bool) {
         let Some(invitation) = self.invitation else { return };
         if invitation.accepted && self.is_in_place(view, invitation.to) {
-            self.link_to(invitation.to, view.mission.root);
+            self.link_to(invitation.to, view.root);
             return;
         }
         let parameters = view.parameters();

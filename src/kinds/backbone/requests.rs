@@ -51,6 +51,11 @@ impl Backbone {
                 }
             }
             Request::Order(order) if order.is_newer_than(self.known.order) => self.known.order = order,
+            Request::Bid(bid) if self.known.mission.parameters.election.is_some() => {
+                if let Some(root) = self.election.hear(bid, self.known.step) {
+                    self.follow(root);
+                }
+            }
             _ => {}
         }
     }
@@ -80,7 +85,7 @@ impl Backbone {
         match &self.duty {
             Duty::Worker(worker) if worker.target == target => Request::Accept { to: sender, sequence },
             Duty::Free if usize::from(target) < mission.targets.len() => {
-                self.duty = Duty::Worker(Worker::new(target, mission));
+                self.duty = Duty::Worker(Worker::new(target, mission, self.known.root));
                 self.previous = Role::Free;
                 Request::Accept { to: sender, sequence }
             }
@@ -91,11 +96,13 @@ impl Backbone {
     /// The answer to the root's request to replace a lost robot of `chain`, `beyond` which so many are left: a free robot
     /// does. Their names it learns from their strands.
     fn answer_replace(&mut self, sender: ActorId, sequence: u8, chain: u8, beyond: Vec<ActorId>) -> Request {
-        let Knowledge { mission, step, .. } = &self.known;
+        let Knowledge {
+            mission, step, root, ..
+        } = &self.known;
         match (&mut self.duty, beyond.last().copied()) {
             (Duty::Networker(networker), _) => networker.hear_replace(sender, sequence, chain),
             (Duty::Free, Some(child)) if mission.has_chain(chain) => {
-                let slot = Slot::new(chain, mission.root);
+                let slot = Slot::new(chain, *root);
                 self.duty = Duty::Networker(Networker::waiting(slot, child, sequence, beyond, *step));
                 self.previous = Role::Free;
                 Request::Accept { to: sender, sequence }
@@ -109,7 +116,7 @@ impl Backbone {
         match &mut self.duty {
             Duty::Networker(networker) => networker.hear_join(sender, sequence, chain, self.known.step),
             Duty::Free if self.known.mission.has_chain(chain) => {
-                let joiner = Networker::new(chain, sender, sequence, self.known.mission.root, self.known.step);
+                let joiner = Networker::new(chain, sender, sequence, self.known.root, self.known.step);
                 self.duty = Duty::Networker(joiner);
                 self.previous = Role::Free;
                 Request::Accept { to: sender, sequence }

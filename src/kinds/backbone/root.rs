@@ -3,6 +3,7 @@
 
 use crate::engine::ActorId;
 use crate::geometry::Vec2;
+use crate::protocol::steering::forces;
 
 use super::lines::Lines;
 use super::message::{Message, Order, Request, Strand};
@@ -10,6 +11,9 @@ use super::mission::Mission;
 use super::recruit::Recruiter;
 use super::shortage::Shortage;
 use super::view::{Knowledge, View};
+
+/// How near to its place a root stops, in safe distances: a body's width, for the old one may stand there.
+const AT_ITS_PLACE: f64 = 0.15;
 
 /// The root's state.
 #[derive(Debug)]
@@ -59,6 +63,28 @@ impl Root {
             appointment: None,
             shortage: Shortage::new(mission.targets.len()),
         }
+    }
+
+    /// One that takes over at control step `step` from a root that was lost, whose newest order it knows: it has heard of no chain yet, and goes
+    /// on from that order. Which targets were visited it does not know.
+    #[must_use]
+    pub fn heir(mission: &Mission, order: Order, step: u64) -> Self {
+        Self {
+            lines: Lines::from_now_on(mission, step),
+            shortage: Shortage::going_on_from(order, mission.targets.len()),
+            ..Self::new(mission)
+        }
+    }
+
+    /// The velocity that it wants: one that was elected goes to the place of the old one, whose body may be there.
+    #[must_use]
+    pub fn velocity(view: &View<'_>) -> Vec2 {
+        let (way, parameters) = (view.way_to_root(), view.parameters());
+        if way.norm() <= AT_ITS_PLACE * parameters.safe {
+            return Vec2::zeros();
+        }
+        let desired = forces::target(way, parameters.target_gain);
+        desired + view.avoidance(desired, parameters.backbone_avoidance_range)
     }
 
     /// Takes in the strand of a chain that ends here.

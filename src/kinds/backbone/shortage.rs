@@ -46,6 +46,15 @@ impl Shortage {
         }
     }
 
+    /// The state in which `order` was given already.
+    #[must_use]
+    pub fn going_on_from(order: Order, targets: usize) -> Self {
+        Self {
+            order,
+            ..Self::new(targets)
+        }
+    }
+
     /// One control step: what is to be expanded from now on.
     pub fn control(&mut self, view: &View<'_>, lines: &Lines) -> Order {
         self.watch_visits(view, lines);

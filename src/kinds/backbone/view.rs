@@ -29,6 +29,8 @@ pub struct Knowledge {
     pub detector: Detector,
     /// The newest order that it knows of.
     pub order: Order,
+    /// Whom it takes for the root.
+    pub root: ActorId,
 }
 
 impl Knowledge {
@@ -43,6 +45,7 @@ impl Knowledge {
             neighbours: &self.neighbours,
             mission: &self.mission,
             order: self.order,
+            root: self.root,
         }
     }
 }
@@ -64,6 +67,8 @@ pub struct View<'a> {
     pub mission: &'a Mission,
     /// What is to be expanded.
     pub order: Order,
+    /// The root.
+    pub root: ActorId,
 }
 
 impl<'a> View<'a> {
@@ -88,7 +93,7 @@ impl<'a> View<'a> {
     /// The way to `robot`, if it is the root or was heard of late.
     #[must_use]
     pub fn way_to(&self, robot: ActorId) -> Option<Vec2> {
-        if robot == self.mission.root {
+        if robot == self.root {
             Some(self.way_to_root())
         } else {
             self.neighbours.get(robot).map(|known| known.position - self.position)

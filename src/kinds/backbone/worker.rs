@@ -24,23 +24,23 @@ pub struct Worker {
 impl Worker {
     /// The worker of target number `target`, at first linked to the root itself by all its chains.
     #[must_use]
-    pub fn new(target: u8, mission: &Mission) -> Self {
+    pub fn new(target: u8, mission: &Mission, root: ActorId) -> Self {
         let chains = mission.targets[usize::from(target)].chains.clone();
         Self {
             target,
-            slots: chains.map(|chain| Slot::new(chain, mission.root)).collect(),
+            slots: chains.map(|chain| Slot::new(chain, root)).collect(),
         }
     }
 
     /// The robot whose chain is that of `slot`, as the new worker of its target. Its other links are yet to be made.
     #[must_use]
-    pub fn heir(slot: Slot, mission: &Mission) -> Self {
+    pub fn heir(slot: Slot, mission: &Mission, root: ActorId) -> Self {
         let target = mission.chain(slot.chain).target;
         let chains = mission.targets[usize::from(target)].chains.clone();
         let mut own = Some(slot);
         let slot_of = |chain| {
             own.take_if(|slot| slot.chain == chain)
-                .unwrap_or_else(|| Slot::broken(chain, mission.root, None))
+                .unwrap_or_else(|| Slot::broken(chain, root, None))
         };
         Self {
             target,

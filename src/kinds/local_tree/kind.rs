@@ -86,6 +86,7 @@ impl Kind for LocalTreeConfig {
                 within: root.settings.range,
             },
             root: root.id,
+            root_role: None,
             worker_role: WORKER,
         })
     }

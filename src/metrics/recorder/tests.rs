@@ -230,6 +230,7 @@ fn a_mission_never_held_is_censored() {
         reach: 0.3,
         ties: Ties::Parents { within: 1.7 },
         root: ActorId(0),
+        root_role: None,
         worker_role: Role(1),
     };
     let mut recorder = recorder(Some(mission));

@@ -34,6 +34,7 @@ fn trial(number: u32, heard: u64) -> TrialRecord {
             reach: 0.3,
             ties: Ties::Parents { within: 1.7 },
             root: ActorId(0),
+            root_role: None,
             worker_role: Role(1),
         }),
         rumors: 0,

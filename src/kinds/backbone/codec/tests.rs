@@ -41,6 +41,11 @@ fn message() -> impl Strategy<Value = Message> {
         (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Accept { to, sequence }),
         (id(), any::<u8>()).prop_map(|(to, sequence)| Request::Refuse { to, sequence }),
         id().prop_map(|to| Request::Release { to }),
+        (any::<u8>(), any::<u16>(), id()).prop_map(|(term, distance, robot)| Request::Bid(Bid {
+            term,
+            distance,
+            robot
+        })),
         (any::<u8>(), prop::collection::vec(0_u8..255, 0..4), any::<u8>()).prop_map(|(epoch, targets, reserve)| {
             let mut dismantled = TargetSet::default();
             for target in targets {
