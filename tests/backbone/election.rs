@@ -33,8 +33,8 @@ fn without_root(record: &TrialRecord) -> (u64, f64) {
 const GRANTED_S: f64 = 4.0 + 10.0;
 
 #[test]
-fn a_crashed_root_has_a_successor_within_the_timeout_and_ten_seconds_and_the_mission_completes() {
-    for number in 0..3 {
+fn in_all_trials_a_crashed_root_has_a_successor_within_the_timeout_and_ten_seconds_and_the_mission_completes() {
+    for number in 0..super::trials(3) {
         let record = trial(number, &[]);
         let (times, longest) = without_root(&record);
         assert_eq!(times, 1, "trial {number}");

@@ -8,14 +8,8 @@
 //! Of two roots, as when a lost one comes back, the one of the newer term stays: whoever hears a root that it does not take for one, or a bid that is
 //! worse than what came of its own term, says what it knows.
 
-use super::Backbone;
-use super::duty::Duty;
-use super::message::{Bid, Message, Request};
-use super::root::Root;
-use crate::engine::{ActorId, SimTime};
-
-/// What is added to the bid of a relay, and twice to that of a worker, millimetres: more than any robot that still hears others is away.
-const ENGAGED_MM: f64 = 20_000.0;
+use super::message::Bid;
+use crate::engine::ActorId;
 
 /// Settings of elections, in control steps.
 #[derive(Clone, Copy, Debug)]
@@ -117,55 +111,6 @@ impl Election {
         let speaks = self.open_since.is_some() || self.is_asked;
         self.is_asked = false;
         speaks.then_some(self.best)
-    }
-}
-
-impl Backbone {
-    /// One control step of electing, where the scenario has it.
-    pub(super) fn elect(&mut self, now: SimTime, out: &mut Vec<Message>) {
-        let Some(rules) = self.known.mission.parameters.election else {
-            return;
-        };
-        let view = self.known.view(&[]);
-        let distance = view.way_to_root().norm();
-        let is_root = matches!(self.duty, Duty::Root(_));
-        let must_hear = !view.neighbours.is_empty() && distance <= view.parameters().critical;
-        let misses = !is_root && must_hear && self.known.detector.suspected_before(now, self.known.root);
-        let engaged = match self.duty {
-            Duty::Root(_) | Duty::Free => 0.0,
-            Duty::Networker(_) => ENGAGED_MM,
-            Duty::Worker(_) => 2.0 * ENGAGED_MM,
-        };
-        // Cast: saturates. One millimetre is what a root that is there is ahead of all.
-        let bid = if is_root {
-            0
-        } else {
-            (1000.0 * distance + engaged).ceil().max(1.0) as u16
-        };
-        let turn = view.has_turn(&view.parameters().request_turns);
-        let (me, step) = (self.known.id, self.known.step);
-        if let Some(root) = self.election.control(me, step, misses, bid, rules) {
-            self.follow(root);
-        }
-        if turn && let Some(bid) = self.election.says() {
-            out.push(Message::Request(Request::Bid(bid)));
-        }
-    }
-
-    /// Takes `root` for the root from now on: it becomes it, or stands down, or counts on it where it counted on the old one.
-    pub(super) fn follow(&mut self, root: ActorId) {
-        let old = std::mem::replace(&mut self.known.root, root);
-        if root == old {
-            return;
-        }
-        if root == self.known.id {
-            self.replace_duty(|_, known| Duty::Root(Root::heir(&known.mission, known.order, known.step)));
-        } else if matches!(self.duty, Duty::Root(_)) {
-            self.become_free();
-        }
-        for slot in self.duty.slots_mut() {
-            slot.follow(old, root);
-        }
     }
 }
 

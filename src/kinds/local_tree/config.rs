@@ -35,8 +35,7 @@ pub struct LocalTreeConfig {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "CompletionConfig")]
     pub completion: Option<CompletionConfig>,
-    /// Control steps for which a robot counts as a neighbour after it was heard, at least 1: with 1, only who was heard since the last step.
-    #[schemars(range(min = 1))]
+    /// Control steps for which a robot still counts as a neighbour after the one at which it was heard: with 0, only who was heard since the last step.
     pub memory: u16,
     /// Which links a robot keeps of those that it and its neighbours have in their trees.
     pub links: Links,
@@ -129,9 +128,6 @@ impl LocalTreeConfig {
     pub fn own_problems(&self, robots: u32, range: f64) -> Vec<(String, String)> {
         let mut found = Vec::new();
         let mut complain = |field: &str, message: String| found.push((field.to_owned(), message));
-        if self.memory == 0 {
-            complain("memory", "must be at least 1: nobody would have a neighbour".into());
-        }
         if let Keep::Midpoint { margin } = self.keep
             && margin.get() >= range / 2.0
         {

@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use super::measure::Measure;
 use super::{Duty, LocalTree, LocalTreeConfig, Settings, WORKER, message};
+use crate::engine::SimTime;
 use crate::geometry::Vec2;
 use crate::kind::{Expected, Goal, InPieces, Kind, Problem, Sections, Shared, Start, Swarm, Targets, targets};
 use crate::metrics::{Mission, MissionTarget, NotedFigure, Ties, TrialRecord};
@@ -55,7 +56,9 @@ impl Kind for LocalTreeConfig {
     fn run(&self, swarm: &Swarm<'_>, start: Start<'_>) -> Result<TrialRecord, RunError> {
         let robots = self.robots(swarm);
         let goal = self.goal(&robots);
-        let finished = start.observe(robots, goal, Measure::new(swarm.poses.len()))?;
+        // Each has then heard all that it hears, built a tree of them, and said it.
+        let settled = swarm.sections.period() * (u64::from(self.memory) + 3);
+        let finished = start.observe(robots, goal, Measure::new(swarm.poses.len(), SimTime::ZERO + settled))?;
         let mut record = finished.record;
         finished.observer.note(&mut record);
         Ok(record)
@@ -140,7 +143,7 @@ impl Kind for LocalTreeConfig {
             found.extend(targets::too_far(config, near, sections, completion));
         }
         let pause = sections.gossip.status.longest_pause(sections.period()).as_secs();
-        let memory = f64::from(self.memory) * sections.control.period.get();
+        let memory = (f64::from(self.memory) + 1.0) * sections.control.period.get();
         if pause > memory {
             let message = format!(
                 "statuses come every {pause} s at the latest, and after {memory} s a robot is forgotten: links come and go"

@@ -1,23 +1,25 @@
-//! What becomes of the links that robots keep, seen from outside: no robot knows it.
+//! What robots' trees make together, seen from outside: no robot knows it.
 
+use bytes::BytesMut;
+use tokio_util::codec::Decoder as _;
+
+use super::message::{Message, MessageCodec};
+use super::tree;
 use crate::engine::{ActorId, SimTime};
 use crate::faults::{Change, Subject};
 use crate::geometry::Vec2;
-use crate::happenings::{Inbox, Observer};
+use crate::happenings::{Observer, Sent};
 use crate::metrics::{Graph, Noted, NotedFigure, TrialRecord};
-use crate::protocol::Note;
 
-use super::tree;
-
-/// Whether the links that either end keeps, and those that both keep, hold the live robots in one piece; the share of links that one end alone
-/// keeps; and how long they all are, by the length of the minimum spanning tree of the swarm. At each sample, from the second on: before, nobody has
-/// heard anybody.
+/// Whether the links that either end has in its tree, and those that both have, hold the live robots in one piece; the share of links that one end
+/// alone has; and how long they all are, by the length of the minimum spanning tree of the swarm. At each sample from when robots have heard whom they can.
 #[derive(Debug)]
 pub struct Measure {
-    /// Whom each robot keeps.
-    links: Vec<Vec<ActorId>>,
+    /// Whom each robot has in its tree, as it last said.
+    trees: Vec<Vec<ActorId>>,
     live: Vec<bool>,
-    samples: usize,
+    /// When robots have heard whom they can.
+    from: SimTime,
     either: Vec<f64>,
     both: Vec<f64>,
     one_sided: Vec<f64>,
@@ -30,12 +32,12 @@ const ONE_SIDED: &str = "links_one_sided";
 const LENGTH: &str = "links_length";
 
 impl Measure {
-    /// Of a swarm of so many robots.
-    pub fn new(robots: usize) -> Self {
+    /// Of a swarm of so many robots, from `from` on.
+    pub fn new(robots: usize, from: SimTime) -> Self {
         Self {
-            links: vec![Vec::new(); robots],
+            trees: vec![Vec::new(); robots],
             live: vec![true; robots],
-            samples: 0,
+            from,
             either: Vec::new(),
             both: Vec::new(),
             one_sided: Vec::new(),
@@ -48,19 +50,19 @@ impl Measure {
         vec![
             NotedFigure::mean(
                 "links_either_connected",
-                "connected by links that either end keeps",
+                "connected by links in the tree of either end",
                 "1",
                 EITHER,
             )
             .higher(),
             NotedFigure::mean(
                 "links_both_connected",
-                "connected by links that both ends keep",
+                "connected by links in the trees of both ends",
                 "1",
                 BOTH,
             )
             .higher(),
-            NotedFigure::mean("links_one_sided", "links that one end alone keeps", "1", ONE_SIDED),
+            NotedFigure::mean("links_one_sided", "links in the tree of one end alone", "1", ONE_SIDED),
             NotedFigure::mean(
                 "links_length",
                 "length of links, by the least that connects all",
@@ -84,13 +86,13 @@ impl Measure {
         }
     }
 
-    /// The links, each once, and whether both of its ends keep it; between live robots.
+    /// The links, each once, and whether both of its ends have it; between live robots.
     fn links(&self) -> Vec<([u32; 2], bool)> {
         let mut links = Vec::new();
-        for (robot, kept) in self.links.iter().enumerate().filter(|(robot, _)| self.live[*robot]) {
+        for (robot, kept) in self.trees.iter().enumerate().filter(|(robot, _)| self.live[*robot]) {
             for other in kept.iter().filter(|other| self.live[other.index()]) {
-                let mutual = self.links[other.index()].contains(&ActorId(robot as u32));
-                // One that both keep is met twice, and counted from its lower end.
+                let mutual = self.trees[other.index()].contains(&ActorId(robot as u32));
+                // One that both have is met twice, and counted from its lower end.
                 if !mutual || robot < other.index() {
                     links.push(([robot as u32, other.0], mutual));
                 }
@@ -101,9 +103,10 @@ impl Measure {
 }
 
 impl Observer for Measure {
-    fn noted<H>(&mut self, _: SimTime, robot: ActorId, note: &Note, _: &Inbox<'_, H>) {
-        if let Note::Parents(links) = note {
-            self.links[robot.index()].clone_from(links);
+    fn sent(&mut self, message: &Sent<'_>) {
+        let mut payload = BytesMut::from(message.payload);
+        if let Ok(Some(Message { tree, .. })) = MessageCodec.decode(&mut payload) {
+            self.trees[message.sender.index()] = tree;
         }
     }
 
@@ -113,14 +116,16 @@ impl Observer for Measure {
         }
     }
 
-    fn sample(&mut self, _: SimTime, positions: &[Vec2]) {
-        self.samples += 1;
+    fn sample(&mut self, now: SimTime, positions: &[Vec2]) {
+        if now < self.from {
+            return;
+        }
         let live: Vec<tree::Placed> = (0..)
             .map(ActorId)
             .zip(positions.iter().copied())
             .filter(|(robot, _)| self.live[robot.index()])
             .collect();
-        if self.samples == 1 || live.len() < 2 {
+        if live.len() < 2 {
             return;
         }
         let links = self.links();

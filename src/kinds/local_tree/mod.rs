@@ -1,7 +1,7 @@
 //! Local minimum spanning trees with kept links: each robot says where it is and whom it counts on, builds the tree of those that it hears, and moves so
 //! that the links of the tree last. Nobody is asked, nothing is remembered but who was heard of late: what the least structure costs, and how loss breaks it.
 //!
-//! Robots know where they are in axes that all share, and say so, as the sources have it. A robot that fails is a neighbour no more once it was not heard for
+//! Robots know where they are in axes that all share, and say so, as the sources have it. A robot that fails is a neighbour no more once it was not heard for more than
 //! [`memory`](LocalTreeConfig::memory) control steps: there is no failure detector.
 
 mod bounds;
@@ -142,7 +142,7 @@ impl LocalTree {
     fn link(&mut self, me: Vec2) {
         let Settings { config, range, .. } = &*self.settings;
         let (step, memory) = (self.step, u64::from(config.memory));
-        self.neighbours.retain(|known| step - known.heard < memory);
+        self.neighbours.retain(|known| step - known.heard <= memory);
         let neighbours = &self.neighbours;
         let is_torn = self.tree.is_empty() || self.tree.iter().any(|robot| neighbours.get(*robot).is_none());
         if config.renew == Renew::EachStep || is_torn || self.held_back {

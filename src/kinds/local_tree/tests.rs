@@ -68,9 +68,9 @@ fn a_union_honours_who_counts_on_it_and_an_intersection_drops_who_does_not() {
 }
 
 #[test]
-fn one_that_is_not_heard_for_as_long_as_the_memory_is_no_neighbour() {
+fn one_that_was_not_heard_for_longer_than_the_memory_is_no_neighbour() {
     let config = LocalTreeConfig {
-        memory: 3,
+        memory: 2,
         ..LocalTreeConfig::default()
     };
     let mut robot = robot(0, Duty::Follows, config);
