@@ -38,7 +38,7 @@ fn where_nobody_moves_and_nothing_is_lost_both_ends_keep_each_link_and_hold_all_
     for number in 0..5 {
         let record = trial(number, DriverKind::Inline, &["wander=Still"]);
         assert!((mean(&record, "links_both_connected") - 1.0).abs() < 1e-12);
-        assert_eq!(mean(&record, "links_one_sided"), 0.0);
+        assert!(mean(&record, "links_one_sided") < 1e-12);
         assert!(mean(&record, "links_length") >= 1.0 - 1e-9);
     }
 }

@@ -74,7 +74,8 @@ impl Election {
 
     /// Whether `bid` is news.
     pub fn knows(&self, bid: Bid) -> bool {
-        !bid.is_of_newer_term_than(self.best) && !(bid.term == self.best.term && bid.is_better_than(self.best))
+        let is_better = bid.term == self.best.term && bid.is_better_than(self.best);
+        !(bid.is_of_newer_term_than(self.best) || is_better)
     }
 
     /// One control step of robot `me`, which `misses` the root or not and would bid `distance`: who is the root from now on, if an election is over.
