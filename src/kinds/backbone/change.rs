@@ -59,7 +59,7 @@ impl Backbone {
         }
     }
 
-    pub(super) fn replace_duty(&mut self, change: impl FnOnce(Duty, &Knowledge) -> Duty) {
+    fn replace_duty(&mut self, change: impl FnOnce(Duty, &Knowledge) -> Duty) {
         self.previous = self.duty.role();
         let old = std::mem::replace(&mut self.duty, Duty::Free);
         self.duty = change(old, &self.known);

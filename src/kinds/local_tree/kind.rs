@@ -3,15 +3,13 @@
 use std::rc::Rc;
 
 use super::measure::Measure;
-use super::{Duty, LocalTree, LocalTreeConfig, Settings, WORKER, message};
+use super::{Duty, Keep, LocalTree, LocalTreeConfig, Settings, WORKER, message};
 use crate::engine::SimTime;
 use crate::geometry::Vec2;
 use crate::kind::{Expected, Goal, InPieces, Kind, Problem, Sections, Shared, Start, Swarm, Targets, targets};
 use crate::metrics::{Mission, MissionTarget, NotedFigure, Ties, TrialRecord};
 use crate::protocol::{Assignment, CompletionConfig, Layout, TargetsConfig};
 use crate::simulation::RunError;
-
-use super::Keep;
 
 impl LocalTreeConfig {
     fn places(&self) -> Vec<(Vec2, u8)> {
@@ -183,10 +181,6 @@ impl Kind for LocalTreeConfig {
 
     fn frames_a_second(&self, _: &Sections<'_>) -> f64 {
         0.0
-    }
-
-    fn sends_statuses_alone(&self, _: &Sections<'_>) -> bool {
-        false
     }
 
     fn predict(&self, _: &Sections<'_>) -> Expected {

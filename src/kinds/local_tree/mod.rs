@@ -117,7 +117,7 @@ impl LocalTree {
         }
     }
 
-    /// The robot of that number is the root of missions; robots that wander have none.
+    /// Whether it is the root of a mission; robots that wander have none.
     fn is_root(&self) -> bool {
         self.duty == Duty::Root
     }
