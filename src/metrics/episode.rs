@@ -18,7 +18,7 @@ pub struct FaultEpisode {
     pub until: Option<SimTime>,
 }
 
-/// A failure of a robot that worked for a target, until the target has its links again: as many vertex-disjoint chains as
+/// A failure of a robot that worked for a target, or of the root, on which every target counts, until the target has its links again: as many vertex-disjoint chains as
 /// just before, or as it needs, if it had more. If its worker failed, or one was at the target, a live worker must also be as
 /// near to the target as then, or at it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

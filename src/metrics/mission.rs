@@ -104,13 +104,17 @@ impl<'a> Scene<'a> {
 }
 
 impl Mission {
-    /// Where chains lead to.
-    fn chains(&self, scene: Scene) -> Chains {
+    /// The robot that chains lead to.
+    pub(super) fn root_now(&self, scene: Scene) -> ActorId {
         let elected = self.root_role.and_then(|role| {
             let mut others = scene.reports.in_role(role).filter(|robot| *robot != self.root);
             others.find(|robot| scene.failures.is_live(*robot))
         });
-        scene.chains(elected.unwrap_or(self.root), self.ties)
+        elected.unwrap_or(self.root)
+    }
+
+    fn chains(&self, scene: Scene) -> Chains {
+        scene.chains(self.root_now(scene), self.ties)
     }
 
     /// nl(t) of each target, in order: the chains of its best connected worker, wherever that is; 0 without a worker.

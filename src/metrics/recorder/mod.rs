@@ -191,11 +191,13 @@ impl Recorder {
     pub fn fault(&mut self, now: SimTime, change: &Change, positions: &[Vec2]) {
         let scene = Scene::new(&self.reports, &self.failures, positions, &self.reach);
         let mission = self.judge.as_ref().map(|judge| &judge.mission);
-        let blow = mission.and_then(|mission| Healing::brace(change, mission, scene));
+        let blows = mission.map_or_else(Vec::new, |mission| Healing::brace(change, mission, scene));
         self.failures.change(now, change, &self.reports);
-        if let (Some(blow), Some(mission)) = (blow, mission) {
+        if let Some(mission) = mission {
             let scene = Scene::new(&self.reports, &self.failures, positions, &self.reach);
-            self.healing.strike(now, change.fault, &blow, mission, scene);
+            for blow in &blows {
+                self.healing.strike(now, change.fault, blow, mission, scene);
+            }
         }
         if let Subject::Robot { robot, health, .. } = change.subject {
             self.detection.fault(now, robot, health);
